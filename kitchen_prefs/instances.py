@@ -1,0 +1,83 @@
+"""The row of an instance set, and the sets padded to one constant shape.
+
+An instance is what a decision may look at: the door, a rack, a dish, or a place for the dish in hand
+(paper, section 2). One instance is one row of 13 numbers:
+
+     0  1  2   3  4  5   6  7  8  9     10        11         12
+    [extents | position | quaternion | decision | is object | is place]
+       m          m        w x y z      index      0 or 1      0 or 1
+
+A set has as many rows as there are instances. LeRobot stores constant shapes only, so sets are padded
+with rows of zeros to `CAPACITY`; a real row is never zero, because it is an object or a place.
+
+A prompt is a whole demonstration: the sets of all its decisions, one below the other, with a
+fourteenth column that marks the row which each decision chose.
+"""
+
+import numpy as np
+
+EXTENTS = slice(0, 3)
+POSITION = slice(3, 6)
+QUATERNION = slice(6, 10)
+POSE = slice(3, 10)
+DECISION = 10
+IS_OBJECT = 11
+IS_PLACE = 12
+COLUMNS = 13
+
+# Door, two racks, twenty dishes, the 48 placements of a category and the sink: the largest place set.
+CAPACITY = 3 + 20 + 48 + 1
+
+CHOSEN = 13  # the prompt's last column
+PROMPT_COLUMNS = 14
+# The rows of the longest prompt are fewer (tests/test_sessions.py measures them).
+PROMPT_CAPACITY = 2560
+
+
+def pack(rows: np.ndarray, capacity: int = CAPACITY) -> np.ndarray:
+    """Pad a set with zero rows.
+
+    Args:
+        rows: The set, (n, D).
+        capacity: The number of rows of the result.
+
+    Returns:
+        The padded set, (capacity, D) float32.
+
+    Raises:
+        ValueError: If the set has more rows than fit.
+    """
+    if len(rows) > capacity:
+        raise ValueError(f"A set of {len(rows)} rows does not fit the capacity of {capacity}.")
+    padded = np.zeros((capacity, rows.shape[1]), dtype=np.float32)
+    padded[: len(rows)] = rows
+    return padded
+
+
+def unpad(instances: np.ndarray) -> np.ndarray:
+    """Give back the set that `pack` padded.
+
+    Args:
+        instances: A padded set, (N, D).
+
+    Returns:
+        The rows that are objects or places, (n, D).
+    """
+    return instances[instances[:, IS_OBJECT] + instances[:, IS_PLACE] > 0]
+
+
+def is_place_decision(rows: np.ndarray) -> bool:
+    """Whether a set, (n, 13), belongs to a place decision: it has places."""
+    return bool(rows[:, IS_PLACE].any())
+
+
+def choosable(rows: np.ndarray) -> np.ndarray:
+    """The rows that a decision may choose: the places if there are any, else the objects.
+
+    Args:
+        rows: A set, (n, 13), padded or not.
+
+    Returns:
+        A mask, (n,) bool.
+    """
+    return rows[:, IS_PLACE if is_place_decision(rows) else IS_OBJECT] > 0
