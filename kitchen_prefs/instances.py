@@ -30,8 +30,9 @@ CAPACITY = 3 + 20 + 48 + 1
 
 CHOSEN = 13  # the prompt's last column
 PROMPT_COLUMNS = 14
-# The rows of the longest prompt are fewer (tests/test_sessions.py measures them).
-PROMPT_CAPACITY = 2560
+# A prompt has at most 14 dishes, each picked among 17 rows and placed among 66, and at most 26 toggles
+# among 17 rows: 6 to load what is there, 20 for what arrives later. 14 * 83 + 26 * 17 = 1604.
+PROMPT_CAPACITY = 1664
 
 
 def pack(rows: np.ndarray, capacity: int = CAPACITY) -> np.ndarray:

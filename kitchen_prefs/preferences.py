@@ -92,6 +92,12 @@ def preference_from_number(number: int) -> Preference:
     return Preference(RACKS[first], categories[:TOP_CATEGORIES], categories[TOP_CATEGORIES:])
 
 
+def preference_number(preference: Preference) -> int:
+    """The inverse of `preference_from_number`."""
+    order = _ORDERS.index(preference.top + preference.bottom)
+    return RACKS.index(preference.first) * (SPACE_SIZE // 2) + order
+
+
 _ORDERS = tuple(permutations(CATEGORIES))
 
 

@@ -1,0 +1,327 @@
+"""The gymnasium environment: load the dishwasher as the person of the prompt does.
+
+One step is one decision: pick an object, or, with a dish in hand, a place for it. An action is a pose;
+the environment takes the nearest row that the decision may choose.
+"""
+
+from typing import Any
+
+import gymnasium
+import numpy as np
+
+from kitchen_prefs import instances
+from kitchen_prefs import kitchen as k
+from kitchen_prefs.demonstrations import prompt_of
+from kitchen_prefs.expert import KitchenView
+from kitchen_prefs.kitchen import Kitchen, Place, kind_of
+from kitchen_prefs.metrics import Episode, success
+from kitchen_prefs.observations import (
+    ENVIRONMENT_STATE_SIZE,
+    FAILED_PICKS,
+    STATE_SIZE,
+    Observation,
+    Observer,
+)
+from kitchen_prefs.preferences import CATEGORIES, RACKS
+from kitchen_prefs.rewards import reward
+from kitchen_prefs.scene.state import SceneState
+from kitchen_prefs.sessions import Session, expert_run, make_session, prompt_session
+from kitchen_prefs.splits import get_split, suggest
+
+TRACKS = ("standard", "privileged", "language")
+TASK = "Load the dishwasher as this person likes it, from one demonstration."
+LIMIT_FACTOR = 2  # an episode ends at twice the expert's number of decisions
+# One constant for the data version: LeRobot reads the first environment's for its whole batch. Twice the
+# longest expert of any published session is less (tests/kitchen_prefs/test_environment.py measures it).
+MAX_EPISODE_STEPS = 160
+METRES_PER_RADIAN = 0.1  # what a turn counts in the distance between two poses
+FRESH_SALTS = 2**31  # an unseeded reset draws its salt below this, never the published salt 0
+
+
+class DishwasherLoading(gymnasium.Env):
+    """Sessions of one split, as `kitchen_prefs/DishwasherLoading-v0`.
+
+    Observations: `instances` (N, 13) the visible set, padded; `environment_state` (E,) a flat summary
+    of it; `agent_pos` (S,) joints, category in hand, decision index; `prompt` (P, 14) the whole prompt
+    demonstration, padded; on the privileged track also `preference` (1,), the label.
+
+    Args:
+        split: The split whose sessions are played.
+        track: "standard" tells nothing of the preference but the prompt, "privileged" adds the label,
+            "language" gives the preference in words as `task_description`.
+        prompt_of: "same", or "other" for a prompt of another preference (the metric prompt use).
+        render_mode: None or "rgb_array".
+
+    Raises:
+        ValueError: If an argument is unknown.
+    """
+
+    metadata = {"render_modes": ["rgb_array"], "render_fps": 4}  # noqa: RUF012 (gymnasium's own form)
+    _max_episode_steps = MAX_EPISODE_STEPS
+    task = "kitchen_prefs"
+
+    def __init__(
+        self,
+        split: str = "seen",
+        track: str = "standard",
+        prompt_of: str = "same",
+        render_mode: str | None = None,
+    ) -> None:
+        if track not in TRACKS:
+            raise ValueError(f"There is no track {track!r}. {suggest(track, TRACKS)}")
+        self.split = get_split(split)
+        self.track = track
+        self.prompt_of = prompt_of
+        self.render_mode = render_mode
+        self.action_space = _box(7)
+        self.observation_space = gymnasium.spaces.Dict(
+            {
+                "instances": _box(instances.CAPACITY, instances.COLUMNS),
+                "environment_state": _box(ENVIRONMENT_STATE_SIZE),
+                "agent_pos": _box(STATE_SIZE),
+                "prompt": _box(instances.PROMPT_CAPACITY, instances.PROMPT_COLUMNS),
+                **({"preference": _box(1)} if track == "privileged" else {}),
+            }
+        )
+        self._renderer: Any = None
+
+    @property
+    def task_description(self) -> str:
+        """One constant sentence, or the preference in words on the language track."""
+        return self._session.preference.in_words if self.track == "language" else TASK
+
+    def reset(
+        self, *, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
+        """Start a session.
+
+        Args:
+            seed: Starts session `seed` modulo the split's size. Without a seed and an option, a fresh
+                session that no published split has is drawn from this environment's own generator.
+            options: `{"session": i, "salt": k}` starts session i of salt k (0 if not given).
+
+        Returns:
+            The observation and the info.
+        """
+        super().reset(seed=seed)
+        self._start(*self._which_session(seed, options or {}))
+        return self._observe(), self._info("", 0.0)
+
+    def step(
+        self, action: np.ndarray
+    ) -> tuple[dict[str, np.ndarray], float, bool, bool, dict[str, Any]]:
+        """Carry out one decision.
+
+        Args:
+            action: The chosen row's pose: position (m) and quaternion (wxyz), (7,).
+
+        Returns:
+            Observation, reward, terminated, truncated and info; `info["refusal"]` says why the kitchen
+            did not carry the decision out ("" if it did), `info["distance"]` how far the action was
+            from the row that was taken (m, plus 0.1 m a radian).
+
+        Raises:
+            ValueError: If the action has another shape or is not finite.
+        """
+        row, distance = nearest_row(self._seen.rows, action)
+        instance = int(self._seen.ids[row])
+        gained = reward(self._view, self._session.preference, instance)
+        early = instance == k.DOOR and self._door_closes_early()
+        refusal = self._decide(instance)
+        self._log(instance, action, refusal, early and not refusal)
+        terminated = self._kitchen.finished
+        truncated = not terminated and len(self._decisions) >= self._limit
+        earned = gained if not refusal else 0.0
+        return self._observe(), earned, terminated, truncated, self._info(refusal, distance)
+
+    def render(self) -> np.ndarray | None:
+        """A picture of the kitchen, (H, W, 3) uint8, if `render_mode` is "rgb_array"."""
+        if self.render_mode is None:
+            return None
+        if self._renderer is None:
+            from kitchen_prefs.scene.rendering import Renderer  # MuJoCo and OpenGL only for pictures
+
+            self._renderer = Renderer(480, 360, "fast")
+        return self._renderer.render(self.scene())
+
+    def close(self) -> None:
+        """Give the renderer back."""
+        if self._renderer is not None:
+            self._renderer.close()
+            self._renderer = None
+
+    # What rollouts and scores read ------------------------------------------------------------
+
+    @property
+    def session(self) -> Session:
+        """The session that is being played."""
+        return self._session
+
+    def scene(self) -> SceneState:
+        """What a renderer draws."""
+        kitchen = self._kitchen
+        dishes = tuple(
+            (CATEGORIES[kitchen.dishes.category[i]], pose[:3], pose[3:])
+            for i, pose in enumerate(kitchen.pose_in_world())
+            if kitchen.place[i] != Place.TO_COME
+        )
+        return SceneState(
+            kitchen.door_open, kitchen.out == "bottom", kitchen.out == "top", dishes
+        )
+
+    def digest(self) -> str:
+        """A hash of the kitchen's state."""
+        return self._kitchen.digest()
+
+    def episode(self) -> Episode:
+        """The facts of the episode so far, from which every metric is computed."""
+        session, kitchen = self._session, self._kitchen
+        expert = expert_run(session)
+        placed, wrong_rack = _standing(kitchen, session)
+        return Episode(
+            split=session.split,
+            session=session.index,
+            salt=session.salt,
+            preference=session.label,
+            count=session.count,
+            decisions=tuple(self._decisions),
+            kinds=tuple(kind_of(instance, session.dishes) for instance in self._decisions),
+            expert_decisions=expert.decisions,
+            expert_kinds=expert.kinds,
+            placed=placed,
+            expert_placed=_standing(expert.kitchen, session)[0],
+            wrong_rack=wrong_rack,
+            sunk=int((kitchen.place == Place.SINK).sum()),
+            expert_sunk=int((expert.kitchen.place == Place.SINK).sum()),
+            forbidden=tuple(self._forbidden),
+            blocked_places=sum(
+                refused and instance >= k.SINK
+                for refused, instance in zip(self._forbidden, self._decisions, strict=True)
+            ),
+            longest_loop=_longest_loop(self._decisions, self._forbidden),
+            closed_early=self._closed_early,
+            closed=kitchen.closed,
+            finished=kitchen.finished,
+            actions=tuple(self._actions),
+        )
+
+    # Inside -----------------------------------------------------------------------------------
+
+    def _which_session(self, seed: int | None, options: dict[str, Any]) -> tuple[int, int]:
+        salt = int(options.get("salt", 0))
+        if "session" in options:
+            return int(options["session"]), salt
+        if seed is not None:
+            return seed % self.split.sessions, salt
+        fresh = int(self.np_random.integers(1, FRESH_SALTS))
+        return int(self.np_random.integers(self.split.sessions)), fresh
+
+    def _start(self, index: int, salt: int) -> None:
+        self._session = make_session(self.split.name, index, salt)
+        self._kitchen = Kitchen(self._session.dishes)
+        self._view = KitchenView(self._kitchen)
+        noise = self._session.generator("noise") if self.split.noisy else None
+        self._grasp = self._session.generator("grasp") if self.split.noisy else None
+        self._observer = Observer(self._kitchen, self._session.generator("order"), noise)
+        self._limit = LIMIT_FACTOR * len(expert_run(self._session).decisions)
+        self._prompt = prompt_of(prompt_session(self._session, self.prompt_of))
+        self._decisions: list[int] = []
+        self._actions: list[tuple[float, ...]] = []
+        self._forbidden: list[bool] = []
+        self._closed_early = 0
+
+    def _observe(self) -> dict[str, np.ndarray]:
+        self._seen: Observation = self._observer.observe()
+        observation = {
+            "instances": instances.pack(self._seen.rows),
+            "environment_state": self._seen.environment_state,
+            "agent_pos": self._seen.state,
+            "prompt": self._prompt,
+        }
+        if self.track == "privileged":
+            observation["preference"] = np.array([self._session.label], dtype=np.float32)
+        return observation
+
+    def _decide(self, instance: int) -> str:
+        fails = self._grasp is not None and self._grasp.random() < FAILED_PICKS
+        if fails and instance >= k.FIRST_DISH and self._kitchen.held is None:
+            return "The grasp failed."
+        return self._kitchen.decide(instance)
+
+    def _door_closes_early(self) -> bool:
+        kitchen = self._kitchen
+        waiting = len(kitchen.counter) > 0 or not kitchen.all_arrived
+        return kitchen.door_open and waiting
+
+    def _log(self, instance: int, action: np.ndarray, refusal: str, early: bool) -> None:
+        self._decisions.append(instance)
+        self._actions.append(tuple(float(value) for value in action))
+        self._forbidden.append(bool(refusal))
+        self._closed_early += early
+
+    def _info(self, refusal: str, distance: float) -> dict[str, Any]:
+        finished = self._kitchen.finished
+        return {
+            "is_success": finished and success(self.episode()),
+            "refusal": refusal,
+            "distance": distance,
+            "session": self._session.index,
+        }
+
+
+def nearest_row(rows: np.ndarray, action: np.ndarray) -> tuple[int, float]:
+    """The row that an action chooses.
+
+    Args:
+        rows: The instance set, (n, 13).
+        action: A pose: position (m) and quaternion (wxyz), (7,).
+
+    Returns:
+        The nearest row that the decision may choose, the lowest on a tie, and its distance:
+        |position difference| in m + 0.1 x the angle between the rotations in rad.
+
+    Raises:
+        ValueError: If the action has another shape or is not finite.
+    """
+    action = np.asarray(action, dtype=np.float64)
+    if action.shape != (7,):
+        raise ValueError(
+            f"An action is a pose of 7 numbers (x y z qw qx qy qz); this one has {action.shape}."
+        )
+    if not np.isfinite(action).all():
+        raise ValueError("An action must be finite; this one holds NaN or infinity.")
+    candidates = np.flatnonzero(instances.choosable(rows))  # (c,)
+    poses = rows[candidates, instances.POSE].astype(np.float64)  # (c, 7)
+    metres = np.linalg.norm(poses[:, :3] - action[:3], axis=1)  # (c,)
+    lengths = np.linalg.norm(poses[:, 3:], axis=1) * max(np.linalg.norm(action[3:]), 1e-12)
+    cosine = np.abs(poses[:, 3:] @ action[3:]) / lengths  # q and -q are one rotation
+    distance = metres + METRES_PER_RADIAN * 2 * np.arccos(np.clip(cosine, 0, 1))  # (c,)
+    nearest = int(distance.argmin())
+    return int(candidates[nearest]), float(distance[nearest])
+
+
+def _box(*shape: int) -> gymnasium.spaces.Box:
+    return gymnasium.spaces.Box(-np.inf, np.inf, shape, np.float32)
+
+
+def _standing(kitchen: Kitchen, session: Session) -> tuple[tuple[int, int], int]:
+    """The dishes that stand in their preferred rack, (top, bottom), and those in the other rack."""
+    standing = {"top": 0, "bottom": 0}
+    wrong = 0
+    for rack in RACKS:
+        for category in kitchen.dishes.category[kitchen.place == k.IN_RACK[rack]]:
+            right = session.preference.rack_of[CATEGORIES[category]] == rack
+            standing[rack] += right
+            wrong += not right
+    return (standing["top"], standing["bottom"]), wrong
+
+
+def _longest_loop(decisions: list[int], forbidden: list[bool]) -> int:
+    """The longest run of one forbidden choice that is repeated."""
+    longest = run = 0
+    previous = None
+    for instance, refused in zip(decisions, forbidden, strict=True):
+        run = (run + 1 if instance == previous else 1) if refused else 0
+        previous = instance if refused else None
+        longest = max(longest, run)
+    return longest

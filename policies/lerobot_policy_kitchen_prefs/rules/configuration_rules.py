@@ -1,0 +1,75 @@
+"""Configuration of the rules."""
+
+from dataclasses import dataclass
+
+from lerobot.configs import PreTrainedConfig
+from lerobot.optim import AdamWConfig, OptimizerConfig
+
+from kitchen_prefs.environment_config import OBS_INSTANCES, OBS_PREFERENCE, OBS_PROMPT
+from kitchen_prefs.splits import suggest
+
+NEEDS = {
+    "random": (OBS_INSTANCES,),
+    "majority": (OBS_INSTANCES,),
+    "nearest": (OBS_INSTANCES, OBS_PROMPT),
+    "symbolic": (OBS_INSTANCES, OBS_PROMPT),
+    "expert": (OBS_INSTANCES, OBS_PREFERENCE),
+}
+
+
+@PreTrainedConfig.register_subclass("rules")
+@dataclass
+class RulesConfig(PreTrainedConfig):
+    """Which rule decides.
+
+    Attributes:
+        rule: "random" chooses any row; "majority" acts by the commonest training preference;
+            "nearest" by the training preference that explains the prompt best; "symbolic" by the
+            preference that it reads out of the prompt; "expert" by the label (privileged track).
+
+    Raises:
+        ValueError: If the rule is unknown.
+    """
+
+    rule: str = "symbolic"
+    device: str | None = "cpu"
+    push_to_hub: bool = False
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.rule not in NEEDS:
+            raise ValueError(f"There is no rule {self.rule!r}. {suggest(self.rule, NEEDS)}")
+
+    def validate_features(self) -> None:
+        """Check that the environment shows what the rule reads.
+
+        Raises:
+            ValueError: If a key is missing.
+        """
+        for key in NEEDS[self.rule]:
+            if key not in (self.input_features or {}):
+                hint = " Use --env.track=privileged." if key == OBS_PREFERENCE else ""
+                raise ValueError(f"The rule {self.rule!r} needs {key!r}, which is not there.{hint}")
+
+    @property
+    def observation_delta_indices(self) -> None:
+        """One decision at a time."""
+        return None
+
+    @property
+    def action_delta_indices(self) -> None:
+        """One action at a time."""
+        return None
+
+    @property
+    def reward_delta_indices(self) -> None:
+        """No rewards are read."""
+        return None
+
+    def get_optimizer_preset(self) -> OptimizerConfig:
+        """A rule has nothing to optimise; LeRobot asks all the same."""
+        return AdamWConfig()
+
+    def get_scheduler_preset(self) -> None:
+        """No schedule."""
+        return None

@@ -1,0 +1,117 @@
+"""The rules as a LeRobot policy."""
+
+from collections.abc import Callable
+from typing import Any
+from zlib import crc32
+
+import numpy as np
+import torch
+from kitchen_prefs import instances
+from kitchen_prefs.environment_config import OBS_INSTANCES, OBS_PREFERENCE, OBS_PROMPT
+from kitchen_prefs.expert import choose
+from kitchen_prefs.preferences import SEEN, Preference
+from kitchen_prefs.sessions import preference_with
+from lerobot.policies import PreTrainedPolicy
+from torch import Tensor
+
+from lerobot_policy_kitchen_prefs.rules.configuration_rules import RulesConfig
+from lerobot_policy_kitchen_prefs.rules.reading import (
+    nearest_training_preference,
+    symbolic_preference,
+)
+from lerobot_policy_kitchen_prefs.rules.sight import Memory, Sight
+
+
+class RulesPolicy(PreTrainedPolicy):
+    """Decides by a rule; nothing is learned."""
+
+    config_class = RulesConfig
+    name = "rules"
+
+    def __init__(self, config: RulesConfig, **kwargs: Any) -> None:
+        super().__init__(config)
+        config.validate_features()
+        self.config: RulesConfig = config
+        self.reset()
+
+    def reset(self) -> None:
+        """Forget the episodes."""
+        self._preferences: list[Preference] = []
+        self._memories: list[Memory] = []
+
+    @torch.no_grad()
+    def select_action(self, batch: dict[str, Tensor], **kwargs: Any) -> Tensor:
+        """Decide once in every environment of the batch.
+
+        Args:
+            batch: The observation; `observation.instances` is (B, N, 13).
+
+        Returns:
+            The chosen rows' poses, (B, 7).
+        """
+        sets = [instances.unpad(padded) for padded in batch[OBS_INSTANCES].cpu().numpy()]
+        if self.config.rule == "random":
+            rows = [_random_row(rows) for rows in sets]
+        else:
+            self._begin(batch, len(sets))
+            rows = [self._row(i, rows) for i, rows in enumerate(sets)]
+        poses = [rows_[row, instances.POSE] for rows_, row in zip(sets, rows, strict=True)]
+        return torch.from_numpy(np.stack(poses))
+
+    def _begin(self, batch: dict[str, Tensor], size: int) -> None:
+        """At an episode's first decision, find out whose dishwasher each one is."""
+        if not self._preferences:
+            self._preferences = PREFERENCES[self.config.rule](batch, size)
+            self._memories = [Memory() for _ in range(size)]
+
+    def _row(self, i: int, rows: np.ndarray) -> int:
+        # The symbolic rule acts on what is visible, so it alone forgets what a closed rack holds.
+        memory = None if self.config.rule == "symbolic" else self._memories[i]
+        return choose(Sight(rows, memory), self._preferences[i])
+
+    def predict_action_chunk(self, batch: dict[str, Tensor], **kwargs: Any) -> Tensor:
+        """The one action that is decided, as a chunk, (B, 1, 7)."""
+        return self.select_action(batch)[:, None]
+
+    def get_optim_params(self) -> dict[str, Any]:
+        """Nothing to optimise."""
+        return {}
+
+    def forward(self, batch: dict[str, Tensor], **kwargs: Any) -> tuple[Tensor, dict[str, Any]]:
+        """Rules are not trained.
+
+        Raises:
+            ValueError: Always.
+        """
+        raise ValueError("A rule is not trained; use it with --policy.type=rules --policy.rule=...")
+
+
+def _random_row(rows: np.ndarray) -> int:
+    """Any choosable row, drawn from a generator seeded by the set: the same in every batch."""
+    generator = np.random.default_rng(crc32(np.ascontiguousarray(rows).tobytes()))
+    return int(generator.choice(np.flatnonzero(instances.choosable(rows))))
+
+
+def _majority(batch: dict[str, Tensor], size: int) -> list[Preference]:
+    """All seven are equally common in `train`; the first stands for them."""
+    return [SEEN[0]] * size
+
+
+def _nearest(batch: dict[str, Tensor], size: int) -> list[Preference]:
+    return [nearest_training_preference(prompt) for prompt in batch[OBS_PROMPT].cpu().numpy()]
+
+
+def _symbolic(batch: dict[str, Tensor], size: int) -> list[Preference]:
+    return [symbolic_preference(prompt) for prompt in batch[OBS_PROMPT].cpu().numpy()]
+
+
+def _expert(batch: dict[str, Tensor], size: int) -> list[Preference]:
+    return [preference_with(round(label)) for label in batch[OBS_PREFERENCE].flatten().tolist()]
+
+
+PREFERENCES: dict[str, Callable[[dict[str, Tensor], int], list[Preference]]] = {
+    "majority": _majority,
+    "nearest": _nearest,
+    "symbolic": _symbolic,
+    "expert": _expert,
+}
