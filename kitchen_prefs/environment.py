@@ -236,7 +236,7 @@ class DishwasherLoading(gymnasium.Env):
             "instances": instances.pack(self._seen.rows),
             "environment_state": self._seen.environment_state,
             "agent_pos": self._seen.state,
-            "prompt": self._prompt,
+            "prompt": self._prompt.copy(),
         }
         if self.track == "privileged":
             observation["preference"] = np.array([self._session.label], dtype=np.float32)
