@@ -1,4 +1,4 @@
-"""The expert's demonstration of a session: one frame a decision, as data sets and prompts hold it."""
+"""The expert's demonstration of a session: one frame a decision, for data sets and prompts."""
 
 from dataclasses import dataclass
 from functools import lru_cache

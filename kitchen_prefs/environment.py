@@ -1,7 +1,7 @@
 """The gymnasium environment: load the dishwasher as the person of the prompt does.
 
-One step is one decision: pick an object, or, with a dish in hand, a place for it. An action is a pose;
-the environment takes the nearest row that the decision may choose.
+One step is one decision: pick an object, or, with a dish in hand, a place for it. An action is a
+pose; the environment takes the nearest row that the decision may choose.
 """
 
 from typing import Any
@@ -12,7 +12,7 @@ import numpy as np
 from kitchen_prefs import instances
 from kitchen_prefs import kitchen as k
 from kitchen_prefs.demonstrations import prompt_of
-from kitchen_prefs.expert import KitchenView
+from kitchen_prefs.expert import KitchenView, choose
 from kitchen_prefs.kitchen import Kitchen, Place, kind_of
 from kitchen_prefs.metrics import Episode, success
 from kitchen_prefs.observations import (
@@ -31,8 +31,9 @@ from kitchen_prefs.splits import get_split, suggest
 TRACKS = ("standard", "privileged", "language")
 TASK = "Load the dishwasher as this person likes it, from one demonstration."
 LIMIT_FACTOR = 2  # an episode ends at twice the expert's number of decisions
-# One constant for the data version: LeRobot reads the first environment's for its whole batch. Twice the
-# longest expert of any published session is less (tests/kitchen_prefs/test_environment.py measures it).
+# One constant for the data version: LeRobot reads the first environment's for its whole batch.
+# Twice the longest expert of any published session is less (tests/kitchen_prefs/test_environment.py
+# measures it).
 MAX_EPISODE_STEPS = 160
 METRES_PER_RADIAN = 0.1  # what a turn counts in the distance between two poses
 FRESH_SALTS = 2**31  # an unseeded reset draws its salt below this, never the published salt 0
@@ -41,14 +42,14 @@ FRESH_SALTS = 2**31  # an unseeded reset draws its salt below this, never the pu
 class DishwasherLoading(gymnasium.Env):
     """Sessions of one split, as `kitchen_prefs/DishwasherLoading-v0`.
 
-    Observations: `instances` (N, 13) the visible set, padded; `environment_state` (E,) a flat summary
-    of it; `agent_pos` (S,) joints, category in hand, decision index; `prompt` (P, 14) the whole prompt
-    demonstration, padded; on the privileged track also `preference` (1,), the label.
+    Observations: `instances` (N, 13) the visible set, padded; `environment_state` (E,) a flat
+    summary of it; `agent_pos` (S,) joints, category in hand, decision index; `prompt` (P, 14) the
+    whole prompt demonstration, padded; on the privileged track also `preference` (1,), the label.
 
     Args:
         split: The split whose sessions are played.
-        track: "standard" tells nothing of the preference but the prompt, "privileged" adds the label,
-            "language" gives the preference in words as `task_description`.
+        track: "standard" tells nothing of the preference but the prompt, "privileged" adds the
+            label, "language" gives the preference in words as `task_description`.
         prompt_of: "same", or "other" for a prompt of another preference (the metric prompt use).
         render_mode: None or "rgb_array".
 
@@ -96,8 +97,9 @@ class DishwasherLoading(gymnasium.Env):
         """Start a session.
 
         Args:
-            seed: Starts session `seed` modulo the split's size. Without a seed and an option, a fresh
-                session that no published split has is drawn from this environment's own generator.
+            seed: Starts session `seed` modulo the split's size. Without a seed and an option, a
+                fresh session, which no published split has, is drawn from this environment's own
+                generator.
             options: `{"session": i, "salt": k}` starts session i of salt k (0 if not given).
 
         Returns:
@@ -116,9 +118,9 @@ class DishwasherLoading(gymnasium.Env):
             action: The chosen row's pose: position (m) and quaternion (wxyz), (7,).
 
         Returns:
-            Observation, reward, terminated, truncated and info; `info["refusal"]` says why the kitchen
-            did not carry the decision out ("" if it did), `info["distance"]` how far the action was
-            from the row that was taken (m, plus 0.1 m a radian).
+            Observation, reward, terminated, truncated and info; `info["refusal"]` says why the
+            kitchen did not carry the decision out ("" if it did), `info["distance"]` how far the
+            action was from the row that was taken (m, plus 0.1 m a radian).
 
         Raises:
             ValueError: If the action has another shape or is not finite.
@@ -139,7 +141,8 @@ class DishwasherLoading(gymnasium.Env):
         if self.render_mode is None:
             return None
         if self._renderer is None:
-            from kitchen_prefs.scene.rendering import Renderer  # MuJoCo and OpenGL only for pictures
+            # MuJoCo and OpenGL are needed for pictures alone.
+            from kitchen_prefs.scene.rendering import Renderer
 
             self._renderer = Renderer(480, 360, "fast")
         return self._renderer.render(self.scene())
@@ -157,6 +160,15 @@ class DishwasherLoading(gymnasium.Env):
         """The session that is being played."""
         return self._session
 
+    def instance_of(self, action: np.ndarray) -> int:
+        """The instance that an action would choose now."""
+        return int(self._seen.ids[nearest_row(self._seen.rows, action)[0]])
+
+    def expert_action(self) -> np.ndarray:
+        """The action with which the expert would go on from here, (7,)."""
+        row = self._seen.row_of(choose(self._view, self._session.preference))
+        return self._seen.rows[row, instances.POSE]
+
     def scene(self) -> SceneState:
         """What a renderer draws."""
         kitchen = self._kitchen
@@ -165,9 +177,7 @@ class DishwasherLoading(gymnasium.Env):
             for i, pose in enumerate(kitchen.pose_in_world())
             if kitchen.place[i] != Place.TO_COME
         )
-        return SceneState(
-            kitchen.door_open, kitchen.out == "bottom", kitchen.out == "top", dishes
-        )
+        return SceneState(kitchen.door_open, kitchen.out == "bottom", kitchen.out == "top", dishes)
 
     def digest(self) -> str:
         """A hash of the kitchen's state."""

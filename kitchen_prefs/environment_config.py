@@ -80,8 +80,8 @@ class KitchenPrefsEnv(EnvConfig):
     ) -> dict[str, dict[int, gymnasium.vector.VectorEnv]]:
         """A batch of environments that rest once their episode has ended.
 
-        They run in this process unless `use_async_envs` asks for others: a decision takes a tenth of a
-        millisecond, starting a process takes seconds.
+        They run in this process unless `use_async_envs` asks for others: a decision takes a tenth
+        of a millisecond, starting a process takes seconds.
         """
         make_one = freeze_after_episode_end(lambda: DishwasherLoading(**self.gym_kwargs))
         mode = gymnasium.vector.AutoresetMode.SAME_STEP

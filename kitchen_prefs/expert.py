@@ -40,12 +40,21 @@ class Option:
 class View(Protocol):
     """What the expert acts upon: the kitchen itself, or what a policy sees of it."""
 
-    door_open: bool
-    out: str | None
-    held: str | None  # the category in hand
     door: int  # the choices that name the door, the racks and the sink
     racks: dict[str, int]
     sink: int
+
+    @property
+    def door_open(self) -> bool:
+        """Whether the door is open."""
+
+    @property
+    def out(self) -> str | None:
+        """The rack that is pulled out, or None."""
+
+    @property
+    def held(self) -> str | None:
+        """The category in hand, or None."""
 
     def waiting(self) -> Sequence[Option]:
         """The dishes on the counter."""
@@ -101,7 +110,7 @@ def nearness_to_sink(pose: np.ndarray) -> Nearness:
 
 
 def nearness_to_corner(pose: np.ndarray, rack: str) -> Nearness:
-    """How near a placement, (7,), is to the pulled-out rack's far left corner, on the floor's plane.
+    """How near a placement, (7,), is to the far left corner of the rack that is out, from above.
 
     Filling up from a corner leaves the largest gap for what comes later.
     """
@@ -119,7 +128,7 @@ def placement_nearness() -> dict[str, list[Nearness]]:
 
 
 class KitchenView:
-    """The whole truth: the expert itself sees the kitchen and remembers what a closed rack holds."""
+    """The whole truth: the expert remembers what a closed rack holds."""
 
     door = k.DOOR
     racks = k.RACK_INSTANCE

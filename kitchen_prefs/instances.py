@@ -1,14 +1,14 @@
 """The row of an instance set, and the sets padded to one constant shape.
 
-An instance is what a decision may look at: the door, a rack, a dish, or a place for the dish in hand
-(paper, section 2). One instance is one row of 13 numbers:
+An instance is what a decision may look at: the door, a rack, a dish, or a place for the dish in
+hand (paper, section 2). One instance is one row of 13 numbers:
 
      0  1  2   3  4  5   6  7  8  9     10        11         12
     [extents | position | quaternion | decision | is object | is place]
        m          m        w x y z      index      0 or 1      0 or 1
 
-A set has as many rows as there are instances. LeRobot stores constant shapes only, so sets are padded
-with rows of zeros to `CAPACITY`; a real row is never zero, because it is an object or a place.
+A set has as many rows as there are instances. LeRobot stores constant shapes only, so sets are
+padded with rows of zeros to `CAPACITY`; a real row is an object or a place, so it is never zero.
 
 A prompt is a whole demonstration: the sets of all its decisions, one below the other, with a
 fourteenth column that marks the row which each decision chose.
@@ -25,13 +25,13 @@ IS_OBJECT = 11
 IS_PLACE = 12
 COLUMNS = 13
 
-# Door, two racks, twenty dishes, the 48 placements of a category and the sink: the largest place set.
+# The largest place set: door, two racks, twenty dishes, 48 placements of a category and the sink.
 CAPACITY = 3 + 20 + 48 + 1
 
 CHOSEN = 13  # the prompt's last column
 PROMPT_COLUMNS = 14
-# A prompt has at most 14 dishes, each picked among 17 rows and placed among 66, and at most 26 toggles
-# among 17 rows: 6 to load what is there, 20 for what arrives later. 14 * 83 + 26 * 17 = 1604.
+# A prompt has at most 14 dishes, each picked among 17 rows and placed among 66, and at most 26
+# toggles among 17 rows, 6 to load what is there and 20 for what arrives later: 1604 rows.
 PROMPT_CAPACITY = 1664
 
 

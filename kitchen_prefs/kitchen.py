@@ -1,7 +1,7 @@
 """The kitchen: joints, where each dish is, and what a decision changes.
 
-No randomness and no policy here. A decision names one instance; the kitchen carries it out or says in
-a sentence why it cannot, and then nothing has changed.
+No randomness and no policy here. A decision names one instance; the kitchen carries it out or says
+in a sentence why it cannot, and then nothing has changed.
 
 Instances have numbers that never change within a session:
 
@@ -25,8 +25,9 @@ SINK = 999
 FIRST_PLACEMENT = {"bottom": 1000, "top": 2000}
 RACK_INSTANCE = {"bottom": BOTTOM_RACK, "top": TOP_RACK}
 
-# Dishes still to come start to arrive at the latest after this many completed actions, so that a policy
-# which never clears the counter meets them too. The expert clears twenty dishes in 25 actions.
+# Dishes still to come start to arrive at the latest after this many completed actions, so that a
+# policy which never clears the counter meets them too. The expert clears twenty dishes in 25
+# actions.
 ARRIVALS_AT_LATEST = 30
 
 
@@ -207,22 +208,26 @@ class Kitchen:
         return ""
 
     def _put(self, instance: int) -> str:
-        dish = self.held
         if instance == SINK:
-            self.place[dish] = Place.SINK
-            self.pose[dish] = SINK_POSE
-        else:
-            placement = instance - FIRST_PLACEMENT[self.out] if self.out else -1
-            if placement not in self.placements():
-                return "A dish goes only into a placement of its category in the rack that is out."
-            if self._blocked[self.out][placement]:
-                return "The placement is blocked by a dish in the rack."
-            self.place[dish] = IN_RACK[self.out]
-            self.placement[dish] = placement
-            self.pose[dish] = self._table.pose[self.out][placement]
-            self._blocked[self.out] |= self._table.blocks[placement]
+            self.place[self.held] = Place.SINK
+            self.pose[self.held] = SINK_POSE
+        elif refusal := self._put_into_rack(instance):
+            return refusal
         self.held = None
         self._complete_action()
+        return ""
+
+    def _put_into_rack(self, instance: int) -> str:
+        rack = self.out
+        if rack is None or instance - FIRST_PLACEMENT[rack] not in self.placements():
+            return "A dish goes only into a placement of its category in the rack that is out."
+        placement = instance - FIRST_PLACEMENT[rack]
+        if self._blocked[rack][placement]:
+            return "The placement is blocked by a dish in the rack."
+        self.place[self.held] = IN_RACK[rack]
+        self.placement[self.held] = placement
+        self.pose[self.held] = self._table.pose[rack][placement]
+        self._blocked[rack] |= self._table.blocks[placement]
         return ""
 
     def _complete_action(self) -> None:
@@ -237,7 +242,7 @@ class Kitchen:
     # What a score and a picture need ---------------------------------------------------------
 
     def pose_in_world(self) -> np.ndarray:
-        """Where each dish really is, (n, 7) float32: those in a rack that is in are further back."""
+        """Where each dish really is, (n, 7) float32: a rack that is in stands further back."""
         pose = self.pose.copy()
         for rack in RACKS:
             if rack != self.out:
@@ -246,8 +251,9 @@ class Kitchen:
 
     def digest(self) -> str:
         """A hash of the whole state, the same in every process."""
-        joints = (self.door_open, self.out, self.held, self.completed, self._arriving, self._arrived)
-        sha = hashlib.sha256(repr(joints).encode())
+        joints = (self.door_open, self.out, self.held)
+        arrivals = (self.completed, self._arriving, self._arrived)
+        sha = hashlib.sha256(repr(joints + arrivals).encode())
         for array in (self.dishes.category, self.pose, self.place, self.placement):
             sha.update(np.ascontiguousarray(array).tobytes())
         return sha.hexdigest()

@@ -110,7 +110,7 @@ def _similarity(sequence: tuple, expert: tuple) -> float:
 def temporal_efficiency(episode: Episode) -> float:
     """TE = PE · l / max(p, l) (paper, appendix): what looping costs."""
     expert = len(episode.expert_decisions)
-    return packing_efficiency(episode) * expert / max(len(episode.decisions), expert)
+    return packing_efficiency(episode) * (expert / max(len(episode.decisions), expert))
 
 
 def score(episode: Episode) -> float:

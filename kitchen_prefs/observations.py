@@ -1,7 +1,7 @@
 """What a decision sees: the visible instances as rows in random order, and a flat summary of them.
 
-The flat summary serves policies that cannot read a set, such as LeRobot's ACT. Its entries are listed
-in ENVIRONMENT_STATE and STATE; it holds nothing that the visible set does not.
+The flat summary serves policies that cannot read a set, such as LeRobot's ACT. Its entries are
+listed in ENVIRONMENT_STATE and STATE; it holds nothing that the visible set does not.
 """
 
 from dataclasses import dataclass
@@ -28,14 +28,21 @@ STATE = (
 )
 ENVIRONMENT_STATE = (
     *(f"{category}s on the counter" for category in CATEGORIES),
-    *(f"{axis} of the {category} nearest to the sink (m)" for category in CATEGORIES for axis in "xyz"),
+    *(
+        f"{axis} of the {category} nearest to the sink (m)"
+        for category in CATEGORIES
+        for axis in "xyz"
+    ),
     "door angle (rad)",
     "bottom rack (m)",
     "top rack (m)",
     *(f"{category} in hand" for category in CATEGORIES),
     *(f"{category}s in the rack that is out" for category in CATEGORIES),
     "a free placement exists",
-    *(f"{value} of the nearest free placement" for value in ("x", "y", "z", "qw", "qx", "qy", "qz")),
+    *(
+        f"{value} of the nearest free placement"
+        for value in ("x", "y", "z", "qw", "qx", "qy", "qz")
+    ),
 )
 STATE_SIZE = len(STATE)
 ENVIRONMENT_STATE_SIZE = len(ENVIRONMENT_STATE)
@@ -177,12 +184,16 @@ def _door_pose(angle: float) -> tuple[float, ...]:
     return (*position, np.cos(angle / 2), np.sin(angle / 2), 0, 0)
 
 
-EXTENTS = np.array([layout.EXTENTS[category] for category in CATEGORIES], dtype=np.float32)  # (7, 3)
+EXTENTS = np.array(
+    [layout.EXTENTS[category] for category in CATEGORIES], dtype=np.float32
+)  # (7, 3)
 OBJECT_IDS = np.array([k.DOOR, k.BOTTOM_RACK, k.TOP_RACK])
 DOOR_ROWS = [_object_row(layout.DOOR_SIZE, _door_pose(a)) for a in (0, layout.DOOR_OPEN_ANGLE)]
 RACK_ROWS = {
     rack: [
-        _object_row((*layout.RACK_INNER, layout.RACK_HEIGHT), (*rack_position(rack, out), 1, 0, 0, 0))
+        _object_row(
+            (*layout.RACK_INNER, layout.RACK_HEIGHT), (*rack_position(rack, out), 1, 0, 0, 0)
+        )
         for out in (False, True)
     ]
     for rack in RACKS

@@ -105,8 +105,8 @@ def _preference(first: str, top: str, bottom: str) -> Preference:
     return Preference(first, tuple(top.split(", ")), tuple(bottom.split(", ")))
 
 
-# 1-3 are the paper's examples; 1-7 are seen in training, 8-12 are held out. Every category stands in
-# each rack in at least two of the seen ones, so none is tied to a rack.
+# 1-3 are the paper's examples; 1-7 are seen in training, 8-12 are held out. Every category stands
+# in each rack in at least two of the seen ones, so none is tied to a rack.
 TWELVE = (
     _preference("top", "cup, glass, small bowl", "big plate, small plate, tray, big bowl"),
     _preference("bottom", "cup, glass, small bowl", "big plate, small plate, tray, big bowl"),

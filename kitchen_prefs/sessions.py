@@ -1,7 +1,7 @@
 """What session i of a split is: whose dishwasher, which dishes, where they stand, which prompt.
 
-A session is a pure function of (data version, split, salt, i). Salt 0 is published, others give fresh
-sessions. Each purpose draws from a generator of its own.
+A session is a pure function of (data version, split, salt, i). Salt 0 is published, others give
+fresh sessions. Each purpose draws from a generator of its own.
 """
 
 from dataclasses import dataclass
@@ -153,7 +153,9 @@ def preference_with(label: int) -> Preference:
 
 def _preference_of(person: int, salt: int) -> Preference:
     """How a person likes it; those from 12 on are drawn anew for each salt."""
-    return TWELVE[person] if person < len(TWELVE) else _other_preferences(salt)[person - len(TWELVE)]
+    return (
+        TWELVE[person] if person < len(TWELVE) else _other_preferences(salt)[person - len(TWELVE)]
+    )
 
 
 @lru_cache

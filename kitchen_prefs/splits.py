@@ -1,7 +1,7 @@
 """The standard splits as named constants.
 
-A split names the person of each session: 0..11 are those with the twelve preferences, from 12 on they
-are the two hundred others, whose preferences are drawn at random (see `sessions`).
+A split names the person of each session: 0..11 are those with the twelve preferences, from 12 on
+they are the two hundred others, whose preferences are drawn at random (see `sessions`).
 """
 
 import difflib
@@ -25,7 +25,8 @@ class Split:
         people: The person of each session; its length is the split's size.
         counts: The numbers of dishes per rack that the sessions take in turn.
         purpose: What it is for, in a few words.
-        serves_prompts: Whether its sessions serve as prompts: then each puts every category into a rack.
+        serves_prompts: Whether its sessions serve as prompts: then each puts every category into a
+        rack.
         noisy: Whether extents, poses and picks are noisy, as perception and grasping are.
         incomplete: Whether each session lacks one category, another one than its prompt lacks.
     """
@@ -65,7 +66,9 @@ SPLITS = {
         Split("unseen_counts", _each(SEEN_PEOPLE, 30), OTHER_COUNTS, "test"),
         Split("unseen_both", _each(HELD_OUT_PEOPLE, 30), OTHER_COUNTS, "test"),
         Split("many_preferences", OTHER_PEOPLE, TRAINING_COUNTS, "test"),
-        Split("noisy", _each(SEEN_PEOPLE + HELD_OUT_PEOPLE, 5), TRAINING_COUNTS, "test", noisy=True),
+        Split(
+            "noisy", _each(SEEN_PEOPLE + HELD_OUT_PEOPLE, 5), TRAINING_COUNTS, "test", noisy=True
+        ),
         Split(
             "prompts",
             _each(HELD_OUT_PEOPLE, 80) + OTHER_PEOPLE,

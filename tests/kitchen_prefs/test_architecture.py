@@ -11,8 +11,8 @@ PACKAGES = {
     "lerobot_policy_kitchen_prefs": ROOT / "policies/lerobot_policy_kitchen_prefs",
     "kitchen_prefs_leaderboard": ROOT / "leaderboard/kitchen_prefs_leaderboard",
 }
-# scene -> kitchen -> {expert, sessions} -> {environment, datasets} -> rollouts; each layer may import
-# those before it.
+# scene -> kitchen -> {expert, sessions} -> {environment, datasets} -> rollouts; each layer may
+# import those before it.
 LAYERS = (
     ("preferences", "instances", "splits"),
     ("scene",),

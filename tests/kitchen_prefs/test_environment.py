@@ -6,6 +6,8 @@ import pytest
 from gymnasium.utils.env_checker import check_env
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.stats import chisquare
+
 from kitchen_prefs import instances
 from kitchen_prefs import kitchen as k
 from kitchen_prefs.environment import (
@@ -19,18 +21,23 @@ from kitchen_prefs.environment_config import KitchenPrefsEnv
 from kitchen_prefs.metrics import edit_similarity, packing_efficiency
 from kitchen_prefs.sessions import expert_run, make_session
 from kitchen_prefs.splits import SPLITS, TEST_SPLITS
-from scipy.stats import chisquare
 
 
 def play_expert(env):
     """Let the expert act through poses; yields what each step returns."""
-    for instance in expert_run(env.session).decisions:
-        row = env._seen.row_of(instance)
-        yield row, env.step(env._seen.rows[row, instances.POSE])
+    terminated = False
+    while not terminated:
+        action = env.expert_action()
+        row = env._seen.row_of(env.instance_of(action))
+        step = env.step(action)
+        terminated = step[2]
+        yield row, step
 
 
 def test_gymnasium_accepts_it():
-    check_env(gymnasium.make("kitchen_prefs/DishwasherLoading-v0").unwrapped, skip_render_check=True)
+    check_env(
+        gymnasium.make("kitchen_prefs/DishwasherLoading-v0").unwrapped, skip_render_check=True
+    )
 
 
 @pytest.mark.parametrize("split", [s for s in TEST_SPLITS if s != "noisy"])
@@ -155,13 +162,12 @@ def test_noise_is_there_and_repeats():
 
 def test_some_picks_fail_under_noise():
     env = DishwasherLoading("noisy")
-    failed = picks = 0
+    failed = 0
     for index in range(60):
         env.reset(options={"session": index})
         dish = env._seen.ids[env._seen.ids >= k.FIRST_DISH][0]
         info = env.step(env._seen.rows[env._seen.row_of(dish), instances.POSE])[-1]
         failed += info["refusal"] == "The grasp failed."
-        picks += 1
     assert 0 < failed < 12
 
 

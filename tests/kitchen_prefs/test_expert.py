@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+
 from kitchen_prefs import kitchen as k
 from kitchen_prefs.expert import run_expert
 from kitchen_prefs.kitchen import Kitchen, Place

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+
 from kitchen_prefs import kitchen as k
 from kitchen_prefs.kitchen import Kitchen, Place, placement_table
 from kitchen_prefs.sessions import make_session
@@ -46,7 +47,9 @@ def test_arbitrary_decisions_keep_the_rules(session, decisions):
         assert (kitchen.place >= Place.COUNTER).sum() >= (places >= Place.COUNTER).sum()
         assert kitchen.door_open or kitchen.out is None
         visible = kitchen.place[kitchen.visible_dishes()]
-        hidden = {Place.SINK, Place.TO_COME} | (set(k.IN_RACK.values()) - {k.IN_RACK.get(kitchen.out)})
+        hidden = {Place.SINK, Place.TO_COME} | (
+            set(k.IN_RACK.values()) - {k.IN_RACK.get(kitchen.out)}
+        )
         assert not set(visible.tolist()) & {int(place) for place in hidden}
 
 
@@ -85,7 +88,9 @@ def test_a_dish_goes_only_into_a_free_placement_of_the_open_rack():
     assert "rack that is out" in kitchen.decide(k.FIRST_PLACEMENT["bottom"] + placement)
     assert kitchen.decide(k.FIRST_PLACEMENT["top"] + placement) == ""
     assert "Only a dish on the counter" in kitchen.decide(k.FIRST_DISH + dish)
-    same = [d for d in kitchen.counter if kitchen.dishes.category[d] == kitchen.dishes.category[dish]]
+    same = [
+        d for d in kitchen.counter if kitchen.dishes.category[d] == kitchen.dishes.category[dish]
+    ]
     if same:
         kitchen.decide(k.FIRST_DISH + int(same[0]))
         assert "blocked" in kitchen.decide(k.FIRST_PLACEMENT["top"] + placement)
@@ -101,9 +106,7 @@ def test_a_sunk_dish_leaves_the_set():
 
 def test_dishes_to_come_arrive_once_the_counter_is_cleared():
     kitchen = next(
-        kitchen
-        for kitchen in (new_kitchen(index=i) for i in range(70))
-        if not kitchen.all_arrived
+        kitchen for kitchen in (new_kitchen(index=i) for i in range(70)) if not kitchen.all_arrived
     )
     for dish in kitchen.counter:
         assert not kitchen.finished
@@ -114,9 +117,7 @@ def test_dishes_to_come_arrive_once_the_counter_is_cleared():
 
 def test_dishes_arrive_in_the_end_even_if_the_counter_is_never_cleared():
     kitchen = next(
-        kitchen
-        for kitchen in (new_kitchen(index=i) for i in range(70))
-        if not kitchen.all_arrived
+        kitchen for kitchen in (new_kitchen(index=i) for i in range(70)) if not kitchen.all_arrived
     )
     for _ in range(k.ARRIVALS_AT_LATEST + len(kitchen.place)):
         kitchen.decide(k.DOOR)
@@ -130,7 +131,8 @@ def test_the_same_decisions_give_the_same_state_in_another_process(index):
     for decision in decisions:
         kitchen.decide(decision)
     script = (
-        "from kitchen_prefs.kitchen import Kitchen; from kitchen_prefs.sessions import make_session\n"
+        "from kitchen_prefs.kitchen import Kitchen\n"
+        "from kitchen_prefs.sessions import make_session\n"
         f"kitchen = Kitchen(make_session('unseen_both', {index}).dishes)\n"
         f"for decision in {decisions}: kitchen.decide(decision)\n"
         "print(kitchen.digest())"

@@ -3,6 +3,7 @@
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+
 from kitchen_prefs.preferences import (
     CATEGORIES,
     HELD_OUT,
@@ -70,4 +71,4 @@ def test_impossible_preferences_are_refused():
     with pytest.raises(ValueError, match="first rack is 'middle'"):
         Preference("middle", TWELVE[0].top, TWELVE[0].bottom)
     with pytest.raises(ValueError, match="names each"):
-        Preference("top", TWELVE[0].top, TWELVE[0].top + ("tray",))
+        Preference("top", TWELVE[0].top, (*TWELVE[0].top, "tray"))

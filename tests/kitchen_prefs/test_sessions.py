@@ -5,6 +5,7 @@ import sys
 
 import numpy as np
 import pytest
+
 from kitchen_prefs import instances
 from kitchen_prefs.demonstrations import prompt_of
 from kitchen_prefs.preferences import CATEGORIES, TWELVE

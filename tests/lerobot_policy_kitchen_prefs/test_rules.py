@@ -3,11 +3,6 @@
 import numpy as np
 import pytest
 import torch
-from kitchen_prefs.demonstrations import prompt_of
-from kitchen_prefs.environment_config import FEATURES_MAP, KitchenPrefsEnv
-from kitchen_prefs.metrics import edit_similarity, packing_efficiency, score
-from kitchen_prefs.preferences import HELD_OUT, SEEN
-from kitchen_prefs.sessions import make_session
 from lerobot.envs import preprocess_observation
 from lerobot.envs.utils import env_to_policy_features
 from lerobot_policy_kitchen_prefs.rules.configuration_rules import RulesConfig
@@ -16,6 +11,12 @@ from lerobot_policy_kitchen_prefs.rules.reading import (
     nearest_training_preference,
     symbolic_preference,
 )
+
+from kitchen_prefs.demonstrations import prompt_of
+from kitchen_prefs.environment_config import FEATURES_MAP, KitchenPrefsEnv
+from kitchen_prefs.metrics import edit_similarity, packing_efficiency, score
+from kitchen_prefs.preferences import HELD_OUT, SEEN
+from kitchen_prefs.sessions import make_session
 
 
 def make_rule(rule, env_config):
@@ -97,5 +98,5 @@ def test_an_unknown_rule_suggests_the_nearest():
 
 
 def test_the_expert_asks_for_the_privileged_track():
-    with pytest.raises(ValueError, match="env.track=privileged"):
+    with pytest.raises(ValueError, match=r"env\.track=privileged"):
         make_rule("expert", KitchenPrefsEnv())

@@ -6,14 +6,14 @@ from zlib import crc32
 
 import numpy as np
 import torch
+from lerobot.policies import PreTrainedPolicy
+from torch import Tensor
+
 from kitchen_prefs import instances
 from kitchen_prefs.environment_config import OBS_INSTANCES, OBS_PREFERENCE, OBS_PROMPT
 from kitchen_prefs.expert import choose
 from kitchen_prefs.preferences import SEEN, Preference
 from kitchen_prefs.sessions import preference_with
-from lerobot.policies import PreTrainedPolicy
-from torch import Tensor
-
 from lerobot_policy_kitchen_prefs.rules.configuration_rules import RulesConfig
 from lerobot_policy_kitchen_prefs.rules.reading import (
     nearest_training_preference,
@@ -28,7 +28,7 @@ class RulesPolicy(PreTrainedPolicy):
     config_class = RulesConfig
     name = "rules"
 
-    def __init__(self, config: RulesConfig, **kwargs: Any) -> None:
+    def __init__(self, config: RulesConfig, **_: Any) -> None:
         super().__init__(config)
         config.validate_features()
         self.config: RulesConfig = config
@@ -40,11 +40,12 @@ class RulesPolicy(PreTrainedPolicy):
         self._memories: list[Memory] = []
 
     @torch.no_grad()
-    def select_action(self, batch: dict[str, Tensor], **kwargs: Any) -> Tensor:
+    def select_action(self, batch: dict[str, Tensor], **_: Any) -> Tensor:
         """Decide once in every environment of the batch.
 
         Args:
             batch: The observation; `observation.instances` is (B, N, 13).
+            **_: What else LeRobot offers to policies.
 
         Returns:
             The chosen rows' poses, (B, 7).
@@ -69,7 +70,7 @@ class RulesPolicy(PreTrainedPolicy):
         memory = None if self.config.rule == "symbolic" else self._memories[i]
         return choose(Sight(rows, memory), self._preferences[i])
 
-    def predict_action_chunk(self, batch: dict[str, Tensor], **kwargs: Any) -> Tensor:
+    def predict_action_chunk(self, batch: dict[str, Tensor], **_: Any) -> Tensor:
         """The one action that is decided, as a chunk, (B, 1, 7)."""
         return self.select_action(batch)[:, None]
 
@@ -77,7 +78,7 @@ class RulesPolicy(PreTrainedPolicy):
         """Nothing to optimise."""
         return {}
 
-    def forward(self, batch: dict[str, Tensor], **kwargs: Any) -> tuple[Tensor, dict[str, Any]]:
+    def forward(self, batch: dict[str, Tensor], **_: Any) -> tuple[Tensor, dict[str, Any]]:
         """Rules are not trained.
 
         Raises:

@@ -4,10 +4,10 @@ from collections import Counter, defaultdict
 from collections.abc import Iterator
 
 import numpy as np
+
 from kitchen_prefs import instances
 from kitchen_prefs.expert import choose
 from kitchen_prefs.preferences import CATEGORIES, SEEN, TOP_CATEGORIES, Preference
-
 from lerobot_policy_kitchen_prefs.rules.sight import Memory, Sight
 
 
@@ -29,9 +29,9 @@ def decisions_of(prompt: np.ndarray) -> Iterator[tuple[np.ndarray, int]]:
 def symbolic_preference(prompt: np.ndarray) -> Preference:
     """The preference that a demonstration shows.
 
-    The first rack is the one that is opened first; a category's rack is where most of its dishes go; of
-    two categories of a rack the earlier is the one that is picked while the other waits. What the
-    prompt leaves open is filled up in the order of CATEGORIES.
+    The first rack is the one that is opened first; a category's rack is where most of its dishes
+    go; of two categories of a rack the earlier is the one that is picked while the other waits.
+    What the prompt leaves open is filled up in the order of CATEGORIES.
 
     Args:
         prompt: (P, 14), padded.

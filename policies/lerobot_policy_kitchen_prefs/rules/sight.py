@@ -1,6 +1,7 @@
 """What a rule sees of the kitchen: the expert's view, read from the rows of one instance set."""
 
 import numpy as np
+
 from kitchen_prefs import instances
 from kitchen_prefs.expert import Nearness, Option, nearness_to_corner, nearness_to_sink
 from kitchen_prefs.kitchen import SINK_POSE, placement_table
@@ -102,7 +103,7 @@ class Sight:
             self._placement_at(self._poses[row], table.of_category[self._category[row]])
             for row in standing
         ]
-        return table.blocks[taken].any(axis=0)
+        return np.any(table.blocks[taken], axis=0)
 
     def _placement_at(self, pose: np.ndarray, among: np.ndarray) -> int:
         """The placement of the rack that is out at which a dish stands."""

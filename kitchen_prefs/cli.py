@@ -1,0 +1,40 @@
+"""The command `kitchen-prefs`.
+
+Other packages add commands through the entry-point group `kitchen_prefs.commands`: each entry names
+a typer app. The commands of an app that has a name stand under that name, those of one without
+stand at the top.
+"""
+
+import sys
+from importlib.metadata import entry_points
+
+import typer
+
+from kitchen_prefs import evaluation
+from kitchen_prefs.datasets import commands as datasets
+
+
+def main() -> None:
+    """Run a command; what the user can put right is said in one sentence, with exit code 1."""
+    try:
+        command_line()()
+    except (ValueError, OSError) as error:
+        sys.exit(f"kitchen-prefs: {error}")
+
+
+def command_line() -> typer.Typer:
+    """The command with the subcommands of all installed packages."""
+    app = typer.Typer(
+        help="Can a policy learn how THIS person loads a dishwasher, from one demonstration?",
+        no_args_is_help=True,
+        add_completion=False,
+        pretty_exceptions_enable=False,  # main says what went wrong
+    )
+    found = sorted(entry_points(group="kitchen_prefs.commands"), key=lambda entry: entry.name)
+    for commands in (datasets.app, evaluation.app, *(entry.load() for entry in found)):
+        app.add_typer(commands)
+    return app
+
+
+if __name__ == "__main__":
+    main()

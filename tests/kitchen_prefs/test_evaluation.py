@@ -1,0 +1,156 @@
+"""Loading policies, and the commands `evaluate` and `select`, with a tiny ACT and the rules."""
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+import torch
+from lerobot.configs import FeatureType, PolicyFeature
+from lerobot.policies import make_pre_post_processors
+from lerobot.policies.act.configuration_act import ACTConfig
+from lerobot.policies.act.modeling_act import ACTPolicy
+from lerobot.utils.constants import ACTION, OBS_ENV_STATE, OBS_STATE
+from typer.testing import CliRunner
+
+from kitchen_prefs import evaluation, splits
+from kitchen_prefs.actors import load_actor
+from kitchen_prefs.observations import ENVIRONMENT_STATE_SIZE, STATE_SIZE
+from kitchen_prefs.records import read_episodes
+
+
+@pytest.fixture
+def few_sessions(monkeypatch):
+    """Cut the splits that these tests play down to their first five sessions."""
+    for name in ("val", "seen", "noisy"):
+        split = splits.SPLITS[name]
+        monkeypatch.setitem(splits.SPLITS, name, replace(split, labels=split.labels[:5]))
+
+
+def save_act(folder: Path, seed: int = 0, state_size: int = STATE_SIZE) -> Path:
+    """Save an untrained ACT as `lerobot-train` saves a checkpoint."""
+    config = ACTConfig(
+        input_features={
+            OBS_STATE: PolicyFeature(FeatureType.STATE, (state_size,)),
+            OBS_ENV_STATE: PolicyFeature(FeatureType.ENV, (ENVIRONMENT_STATE_SIZE,)),
+        },
+        output_features={ACTION: PolicyFeature(FeatureType.ACTION, (7,))},
+        device="cpu",
+        chunk_size=4,
+        n_action_steps=4,
+        dim_model=16,
+        n_heads=2,
+        dim_feedforward=16,
+        n_encoder_layers=1,
+        n_decoder_layers=1,
+        use_vae=False,
+        pretrained_backbone_weights=None,
+    )
+    with torch.random.fork_rng():
+        torch.manual_seed(seed)
+        policy = ACTPolicy(config)
+    policy.save_pretrained(folder)
+    for processor in make_pre_post_processors(config):
+        processor.save_pretrained(folder)
+    return folder
+
+
+def call(*arguments: str):
+    result = CliRunner().invoke(evaluation.app, arguments)
+    if result.exception and not isinstance(result.exception, SystemExit):
+        raise result.exception
+    return result
+
+
+def test_a_checkpoint_is_known_by_its_weights(tmp_path):
+    one = load_actor(str(save_act(tmp_path / "one")))
+    again = load_actor(str(save_act(tmp_path / "again")))
+    other = load_actor(str(save_act(tmp_path / "other", seed=1)))
+    assert one.fingerprint == again.fingerprint != other.fingerprint
+
+
+def test_a_setting_that_changes_what_it_does_changes_the_fingerprint(tmp_path):
+    path = str(save_act(tmp_path))
+    assert load_actor(path, options=["--n_action_steps=1"]).fingerprint != (
+        load_actor(path).fingerprint
+    )
+    assert load_actor(path, options=["--push_to_hub=false"]).fingerprint == (
+        load_actor(path).fingerprint
+    )
+
+
+def test_a_checkpoint_that_does_not_fit_is_refused(tmp_path):
+    with pytest.raises(ValueError, match=r"'observation\.state' of shape \(9,\)"):
+        load_actor(str(save_act(tmp_path, state_size=9)))
+
+
+def test_unknown_policies_and_settings_are_refused_with_the_nearest(tmp_path):
+    with pytest.raises(ValueError, match="Did you mean 'rules'"):
+        load_actor(policy_type="rule")
+    with pytest.raises(ValueError, match="Did you mean 'rule'"):
+        load_actor(policy_type="rules", options=["--rul=expert"])
+    with pytest.raises(ValueError, match="Did you mean 'expert'"):
+        load_actor(policy_type="rules", options=["--rule=exprt"])
+    with pytest.raises(ValueError, match="no setting 'dim_modl'"):
+        load_actor(str(save_act(tmp_path)), options=["--dim_modl=3"])
+
+
+def test_a_folder_without_a_policy_is_refused(tmp_path):
+    with pytest.raises(ValueError, match="There is no policy in"):
+        load_actor(str(tmp_path))
+    with pytest.raises(ValueError, match="There is no policy in"):
+        load_actor(str(tmp_path / "nowhere"))
+    with pytest.raises(ValueError, match="Give either"):
+        load_actor()
+
+
+@pytest.mark.usefixtures("few_sessions")
+def test_evaluate_keeps_one_line_an_episode(tmp_path):
+    path, out = save_act(tmp_path / "act"), tmp_path / "out"
+    result = call("evaluate", f"--policy.path={path}", "--split=noisy,seen", f"--out={out}")
+    assert "Score" in result.output
+    assert "mean of the splits" in result.output
+    assert len(read_episodes(out / "noisy.jsonl")) == 5
+    assert json.loads((out / "seen.json").read_text())["episodes"] == 5
+
+
+@pytest.mark.usefixtures("few_sessions")
+def test_evaluate_refuses_two_policies_in_one_folder(tmp_path):
+    out = tmp_path / "out"
+    first, other = save_act(tmp_path / "first"), save_act(tmp_path / "other", seed=1)
+    call("evaluate", f"--policy.path={first}", "--split=noisy", f"--out={out}")
+    with pytest.raises(ValueError, match="another fingerprint"):
+        call("evaluate", f"--policy.path={other}", "--split=noisy", f"--out={out}")
+
+
+@pytest.mark.usefixtures("few_sessions")
+def test_the_expert_rule_is_perfect(tmp_path):
+    arguments = ("--policy.type=rules", "--policy.rule=expert", "--track=privileged")
+    call("evaluate", *arguments, "--split=seen", f"--out={tmp_path}")
+    metrics = json.loads((tmp_path / "seen.json").read_text())["metrics"]
+    assert {interval["low"] for interval in metrics.values()} == {1}
+
+
+def test_unknown_options_are_refused(tmp_path):
+    for wrong in ("--splitt=seen", "--policy.rule"):
+        with pytest.raises(ValueError, match=f"no option '{wrong}'"):
+            call("evaluate", "--split=seen", f"--out={tmp_path}", wrong)
+
+
+@pytest.mark.usefixtures("few_sessions")
+def test_select_names_the_best_checkpoint(tmp_path):
+    for seed, step in enumerate(("000100", "000200")):
+        save_act(tmp_path / "checkpoints" / step / "pretrained_model", seed)
+    (tmp_path / "checkpoints" / "last").symlink_to("000200")
+    result = call("select", str(tmp_path))
+    selection = json.loads((tmp_path / "selection.json").read_text())
+    scores = {step: m["Score"]["mean"] for step, m in selection["checkpoints"].items()}
+    assert set(scores) == {"000100", "000200"}
+    best = max(scores, key=lambda step: scores[step])
+    assert selection["best"] == f"checkpoints/{best}/pretrained_model"
+    assert best in result.output
+
+
+def test_a_run_without_checkpoints_cannot_be_selected_from(tmp_path):
+    with pytest.raises(ValueError, match="holds no checkpoints"):
+        call("select", str(tmp_path))
