@@ -1,0 +1,33 @@
+"""Speed, each figure beside a yardstick measured in the same run: `uv run python -m benchmarks`.
+
+A machine's speed drifts and machines differ, so the ratio is what to compare.
+"""
+
+import json
+from pathlib import Path
+
+import typer
+
+from benchmarks.data import loader_samples, making_episodes
+from benchmarks.kitchen import kitchen_decisions
+from benchmarks.training import training_steps
+
+
+def main(out: Path = Path("outputs/benchmarks.json")) -> None:
+    """Measure everything; takes about two minutes on two cores.
+
+    For example:
+    uv run python -m benchmarks
+    """
+    results = []
+    for measure in (kitchen_decisions, making_episodes, loader_samples, training_steps):
+        for result in measure():
+            results.append(result)
+            typer.echo(result)
+    out.parent.mkdir(parents=True, exist_ok=True)
+    out.write_text(json.dumps([vars(result) for result in results], indent=2) + "\n")
+    typer.echo(f"\nThe figures are in {out}.")
+
+
+if __name__ == "__main__":  # worker processes import this file too
+    typer.run(main)

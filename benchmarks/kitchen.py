@@ -1,0 +1,74 @@
+"""Decisions a second of the kitchen and of the environment, beside CartPole's steps."""
+
+from collections.abc import Iterator
+
+import gymnasium
+import numpy as np
+
+from benchmarks.measuring import Result, rates
+from kitchen_prefs import instances
+from kitchen_prefs.environment import DishwasherLoading
+from kitchen_prefs.kitchen import Kitchen
+from kitchen_prefs.observations import Observer
+from kitchen_prefs.sessions import expert_run, make_session
+
+SESSIONS = range(0, 70, 5)
+
+
+def kitchen_decisions() -> Iterator[Result]:
+    sessions = [make_session("seen", i) for i in SESSIONS]
+    decisions = [expert_run(session).decisions for session in sessions]
+    total = sum(map(len, decisions))
+    environment = DishwasherLoading("seen")
+    actions = {i: list(_actions(environment, i)) for i in SESSIONS}
+    cartpole = gymnasium.make("CartPole-v1").unwrapped
+
+    def rules() -> int:
+        for session, of_session in zip(sessions, decisions, strict=True):
+            kitchen = Kitchen(session.dishes)
+            for instance in of_session:
+                kitchen.decide(instance)
+        return total
+
+    def rules_and_sets() -> int:
+        for session, of_session in zip(sessions, decisions, strict=True):
+            kitchen = Kitchen(session.dishes)
+            observer = Observer(kitchen, np.random.default_rng(0), None)
+            for instance in of_session:
+                observer.observe()
+                kitchen.decide(instance)
+        return total
+
+    def steps() -> int:
+        for i in SESSIONS:
+            environment.reset(options={"session": i})
+            for action in actions[i]:
+                environment.step(action)
+        return total
+
+    def cartpole_steps() -> int:
+        cartpole.reset(seed=0)
+        for _ in range(1000):
+            cartpole.step(0)
+            cartpole.steps_beyond_terminated = None
+        return 1000
+
+    names = (
+        "kitchen: rules alone",
+        "kitchen: rules and instance sets",
+        "environment: step, reset included",
+    )
+    *found, yardstick = rates(rules, rules_and_sets, steps, cartpole_steps)
+    for name, rate in zip(names, found, strict=True):
+        yield Result(name, rate, "decisions/s", "CartPole-v1 steps", yardstick)
+
+
+def _actions(environment: DishwasherLoading, session: int) -> Iterator[np.ndarray]:
+    environment.reset(options={"session": session})
+    terminated = False
+    while not terminated:
+        action = environment.expert_action()
+        assert action.shape == environment.action_space.shape
+        assert len(action) == instances.POSE.stop - instances.POSE.start
+        yield action
+        terminated = environment.step(action)[2]

@@ -1,0 +1,88 @@
+"""The command `kitchen-prefs quickstart`."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+app = typer.Typer()
+
+RECIPE = "ttp_quick"
+TRAINING_DATA = "dishwasher-train-v1"
+SPLITS = ("seen", "unseen_preferences")
+RULES = ("random", "majority", "expert")
+SHOWN = ("unseen_preferences", 0)  # the episode of the pictures
+
+
+@app.command()
+def quickstart(
+    out: Annotated[Path, typer.Option(help="The folder of the results.")] = Path(
+        "outputs/quickstart"
+    ),
+) -> None:
+    """Make the data, train TTP for some minutes, score it beside simple rules, and draw pictures.
+
+    A command that was stopped goes on where it was when it is called again.
+
+    For example:
+    kitchen-prefs quickstart
+    """
+    typer.echo(f"1/4  Demonstrations: {TRAINING_DATA}")
+    from kitchen_prefs.datasets import make_dataset
+
+    make_dataset(TRAINING_DATA)
+
+    typer.echo(f"2/4  Training: lerobot-train with the recipe {RECIPE}")
+    from lerobot_policy_kitchen_prefs.quickstart.training import read_log, train
+
+    run = out / "train"
+    checkpoint = train(RECIPE, run)
+
+    typer.echo("3/4  Rollouts in the kitchen, sessions and preferences that training has not seen")
+    summaries, shown = _evaluate(checkpoint, out)
+
+    typer.echo("4/4  Table and pictures")
+    from lerobot_policy_kitchen_prefs.quickstart.pictures import draw_episode
+    from lerobot_policy_kitchen_prefs.quickstart.report import write_learning_curve, write_table
+
+    table = write_table(summaries, out)
+    write_learning_curve(read_log(run), _log_freq(checkpoint), out / "learning_curve.png")
+    draw_episode(shown, out)
+    typer.echo(f"\n{table}\nThe table, the learning curve and the pictures are in {out}.")
+    typer.echo(_next_steps(checkpoint))
+
+
+def _evaluate(checkpoint: Path, out: Path):
+    """Every policy on every split; and the episode of the pictures."""
+    from kitchen_prefs.actors import load_actor
+    from kitchen_prefs.evaluator import Evaluator
+
+    actors = {"TTP": load_actor(str(checkpoint))}
+    for rule in RULES:
+        track = "privileged" if rule == "expert" else "standard"
+        actors[rule] = load_actor(policy_type="rules", options=[f"--rule={rule}"], track=track)
+    evaluators = {
+        name: Evaluator(actor, out / "evaluation" / name) for name, actor in actors.items()
+    }
+    summaries = {
+        name: {split: evaluator.evaluate(split) for split in SPLITS}
+        for name, evaluator in evaluators.items()
+    }
+    split, session = SHOWN
+    return summaries, evaluators["TTP"].episodes(split)[session]
+
+
+def _log_freq(checkpoint: Path) -> int:
+    from lerobot.configs.train import TrainPipelineConfig
+
+    return TrainPipelineConfig.from_pretrained(checkpoint).log_freq
+
+
+def _next_steps(checkpoint: Path) -> str:
+    return f"""
+Next:
+  kitchen-prefs evaluate --policy.path={checkpoint} --split=unseen_both --out=outputs/ttp_quick
+  lerobot-eval --policy.path={checkpoint} --env.type=kitchen_prefs --env.task=seen \\
+    --eval.n_episodes=70 --eval.batch_size=10
+  lerobot-train --config_path={checkpoint}/train_config.json --resume=true --steps=20000
+"""
