@@ -14,8 +14,14 @@ from draccus.utils import ParsingError
 from huggingface_hub.errors import HFValidationError
 from lerobot.configs import PreTrainedConfig
 from lerobot.envs import env_to_policy_features, preprocess_observation
-from lerobot.policies import PreTrainedPolicy, make_policy, make_pre_post_processors
+from lerobot.policies import (
+    PreTrainedPolicy,
+    get_policy_class,
+    make_policy,
+    make_pre_post_processors,
+)
 from lerobot.processor import PolicyProcessorPipeline
+from lerobot.utils.constants import ACTION
 from lerobot.utils.import_utils import register_third_party_plugins
 
 from kitchen_prefs.environment_config import KitchenPrefsEnv
@@ -117,7 +123,7 @@ def load_actor(
     asked_for: str = getattr(config, "track", "standard")
     environment = KitchenPrefsEnv(track=track or asked_for)
     _check_features(config, environment)
-    policy = make_policy(config, env_cfg=environment)
+    policy = make_policy(config, env_cfg=environment) if path else _untrained(config, environment)
     policy.eval()
     overrides = {"device_processor": {"device": config.device}} if path else {}
     pre, post = make_pre_post_processors(config, path, preprocessor_overrides=overrides)
@@ -146,6 +152,14 @@ def _make_config(policy_type: str, options: Sequence[str]) -> PreTrainedConfig:
         raise ValueError(f"There is no policy type {policy_type!r}. {suggest(policy_type, known)}")
     _check_settings(known[policy_type], options)
     return draccus.parse(known[policy_type], args=list(options))
+
+
+def _untrained(config: PreTrainedConfig, environment: KitchenPrefsEnv) -> PreTrainedPolicy:
+    """Make a policy without weights; LeRobot's factory would warn that it lacks statistics."""
+    features = env_to_policy_features(environment)
+    config.output_features = {ACTION: features.pop(ACTION)}
+    config.input_features = features
+    return get_policy_class(config.type)(config)
 
 
 def _check_settings(config_class: type[PreTrainedConfig], options: Sequence[str]) -> None:

@@ -43,7 +43,9 @@ def evaluate(
         str | None, typer.Option("--policy.type", help="A policy that needs no training.")
     ] = None,
     track: Track = None,
-    salt: Annotated[int, typer.Option(help="0: the published sessions; else fresh ones.")] = 0,
+    salt: Annotated[
+        int, typer.Option(help="0: the published sessions; else fresh ones.", min=0)
+    ] = 0,
     batch_size: BatchSize = 16,
     prompt_use: Annotated[
         bool, typer.Option("--prompt-use", help="Also play with another preference's prompt.")

@@ -12,7 +12,7 @@ from kitchen_prefs import instances
 from kitchen_prefs import kitchen as k
 from kitchen_prefs.expert import placement_nearness
 from kitchen_prefs.kitchen import Kitchen, Place, placement_table, rack_position
-from kitchen_prefs.preferences import CATEGORIES, RACKS
+from kitchen_prefs.preferences import CATEGORIES, RACKS, plural
 from kitchen_prefs.scene import layout
 
 EXTENT_NOISE = 0.05  # standard deviation, relative (design of the `noisy` split)
@@ -27,7 +27,7 @@ STATE = (
     "decision index",
 )
 ENVIRONMENT_STATE = (
-    *(f"{category}s on the counter" for category in CATEGORIES),
+    *(f"{plural(category)} on the counter" for category in CATEGORIES),
     *(
         f"{axis} of the {category} nearest to the sink (m)"
         for category in CATEGORIES
@@ -37,7 +37,7 @@ ENVIRONMENT_STATE = (
     "bottom rack (m)",
     "top rack (m)",
     *(f"{category} in hand" for category in CATEGORIES),
-    *(f"{category}s in the rack that is out" for category in CATEGORIES),
+    *(f"{plural(category)} in the rack that is out" for category in CATEGORIES),
     "a free placement exists",
     *(
         f"{value} of the nearest free placement"

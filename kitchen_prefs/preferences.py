@@ -67,13 +67,16 @@ class Preference:
     @cached_property
     def in_words(self) -> str:
         """The preference as a sentence that a person would say."""
-        loads = [f"the {rack} rack with {_enumerate(self.order(rack))}" for rack in self.racks]
+        loads = [
+            f"the {rack} rack with {', then '.join(map(plural, self.order(rack)))}"
+            for rack in self.racks
+        ]
         return f"Load {loads[0]}; then {loads[1]}."
 
 
-def _enumerate(categories: tuple[str, ...]) -> str:
-    plurals = [f"{category}{'es' if category.endswith('s') else 's'}" for category in categories]
-    return ", then ".join(plurals)
+def plural(category: str) -> str:
+    """The word for several dishes of a category."""
+    return f"{category}{'es' if category.endswith('s') else 's'}"
 
 
 def preference_from_number(number: int) -> Preference:

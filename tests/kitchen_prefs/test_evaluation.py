@@ -24,7 +24,7 @@ def few_sessions(monkeypatch):
     """Cut the splits that these tests play down to their first five sessions."""
     for name in ("val", "seen", "noisy"):
         split = splits.SPLITS[name]
-        monkeypatch.setitem(splits.SPLITS, name, replace(split, labels=split.labels[:5]))
+        monkeypatch.setitem(splits.SPLITS, name, replace(split, people=split.people[:5]))
 
 
 def save_act(folder: Path, seed: int = 0, state_size: int = STATE_SIZE) -> Path:

@@ -174,7 +174,7 @@ def test_a_damaged_line_is_named(tmp_path):
 
 def test_an_evaluation_summarises_its_split(tmp_path, monkeypatch):
     seen = splits.SPLITS["seen"]
-    monkeypatch.setitem(splits.SPLITS, "seen", replace(seen, labels=seen.labels[:12]))
+    monkeypatch.setitem(splits.SPLITS, "seen", replace(seen, people=seen.people[:12]))
     actor = cast(Actor, Lowest())
     summary = Evaluator(actor, tmp_path, batch_size=32).evaluate(
         "seen", with_prompt_use=True, with_category_accuracy=True

@@ -1,0 +1,17 @@
+"""Data sets by name: make, load, verify.
+
+names         the grammar of the names, and where a data set lies
+columns       what a frame holds, and the content fingerprint
+writing       LeRobot's files, written on all cores
+manifest      what a data set says about itself
+making        make on demand, and load
+verification  everything a data set must satisfy
+cards         a card for each data set
+recording     fingerprints and cards of the published data sets
+commands      `kitchen-prefs datasets`
+"""
+
+from kitchen_prefs.datasets.making import load_dataset, make_dataset
+from kitchen_prefs.datasets.names import dataset_names, dataset_root
+
+__all__ = ["dataset_names", "dataset_root", "load_dataset", "make_dataset"]

@@ -1,0 +1,120 @@
+"""The columns of a data set: one row a frame, one frame a decision.
+
+    frame 0  observation.instances (72, 13)  action (7)  chosen_index  ...   episode_index 0
+    frame 1  observation.instances (72, 13)  action (7)  chosen_index  ...   episode_index 0
+    ...
+
+`kitchen_prefs.instances` draws one instance set. LeRobot adds timestamp, frame_index,
+episode_index, index and task_index.
+"""
+
+import hashlib
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+from kitchen_prefs.demonstrations import Demonstration
+from kitchen_prefs.instances import CAPACITY, COLUMNS
+from kitchen_prefs.observations import ENVIRONMENT_STATE, STATE
+
+POSE_NAMES = ("x", "y", "z", "qw", "qx", "qy", "qz")
+FPS = 1  # a decision has no duration; with 1 a timestamp is the decision's number
+ROBOT_TYPE = "kitchen_prefs"
+
+
+def _feature(dtype: str, shape: tuple[int, ...], names: Iterable[str] | None) -> dict[str, Any]:
+    return {"dtype": dtype, "shape": shape, "names": None if names is None else list(names)}
+
+
+FEATURES = {
+    "observation.instances": _feature("float32", (CAPACITY, COLUMNS), ("instance", "column")),
+    "observation.environment_state": _feature(
+        "float32", (len(ENVIRONMENT_STATE),), ENVIRONMENT_STATE
+    ),
+    "observation.state": _feature("float32", (len(STATE),), STATE),
+    "action": _feature("float32", (len(POSE_NAMES),), POSE_NAMES),
+    "chosen_index": _feature("int64", (1,), None),
+    "preference": _feature("int64", (1,), None),
+    "next.reward": _feature("float32", (1,), None),
+    "next.done": _feature("bool", (1,), None),
+    "next.success": _feature("bool", (1,), None),
+}
+BOOKKEEPING = ("timestamp", "frame_index", "episode_index", "index", "task_index")
+
+
+def columns_of(demonstration: Demonstration) -> dict[str, np.ndarray]:
+    """The columns of one episode.
+
+    Returns:
+        For each of FEATURES, (T, ...); a feature of shape (1,) is (T,).
+    """
+    frames = len(demonstration.action)
+    return {
+        "observation.instances": demonstration.instances,
+        "observation.environment_state": demonstration.environment_state,
+        "observation.state": demonstration.state,
+        "action": demonstration.action,
+        "chosen_index": demonstration.chosen_index,
+        "preference": np.full(frames, demonstration.preference, dtype=np.int64),
+        "next.reward": demonstration.reward,
+        "next.done": demonstration.done,
+        "next.success": demonstration.success,
+    }
+
+
+def read_columns(root: Path) -> dict[str, np.ndarray]:
+    """Read all columns of a data set, in frame order.
+
+    Args:
+        root: The data set's folder.
+
+    Returns:
+        For each of FEATURES and BOOKKEEPING, (frames, ...).
+    """
+    table = pa.concat_tables(
+        [pq.read_table(path) for path in sorted(root.glob("data/*/*.parquet"))]
+    )
+    columns = {}
+    for name in (*FEATURES, *BOOKKEEPING):
+        shape = FEATURES[name]["shape"] if name in FEATURES else (1,)
+        values = _flat(table[name].combine_chunks()).to_numpy(zero_copy_only=False)
+        columns[name] = values.reshape(-1, *(() if shape == (1,) else shape))
+    return columns
+
+
+def read_tasks(root: Path) -> list[str]:
+    """Read the tasks of a data set, in the order of their indices."""
+    table = pq.read_table(root / "meta" / "tasks.parquet")
+    by_index = zip(table["task_index"].to_pylist(), table["task"].to_pylist(), strict=True)
+    return [task for _, task in sorted(by_index)]
+
+
+def fingerprint(columns: dict[str, np.ndarray], tasks: list[str]) -> str:
+    """The content fingerprint of a data set.
+
+    It depends on the values alone, not on how parquet stores them.
+
+    Args:
+        columns: As from `read_columns`.
+        tasks: As from `read_tasks`.
+
+    Returns:
+        A SHA-256 over the columns' names, types, shapes and values in frame order, and the tasks.
+    """
+    digest = hashlib.sha256()
+    for name in sorted(columns):
+        values = columns[name].astype(columns[name].dtype.newbyteorder("<"))
+        digest.update(f"{name} {values.dtype.str} {values.shape}\n".encode())
+        digest.update(values.tobytes())
+    digest.update("\n".join(tasks).encode())
+    return digest.hexdigest()
+
+
+def _flat(array: pa.Array) -> pa.Array:
+    while isinstance(array, pa.ListArray | pa.FixedSizeListArray):
+        array = array.flatten()
+    return array

@@ -1,0 +1,87 @@
+"""Make data sets on demand, and load them."""
+
+import shutil
+import warnings
+from concurrent.futures import BrokenExecutor
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from filelock import FileLock
+
+from kitchen_prefs.datasets.manifest import published_fingerprint, read_manifest
+from kitchen_prefs.datasets.names import Content, content_of, dataset_root
+
+if TYPE_CHECKING:
+    from lerobot.datasets import LeRobotDataset
+
+
+def load_dataset(name: str) -> "LeRobotDataset":
+    """Load a data set, which is made first if it is not there.
+
+    Args:
+        name: Such as `dishwasher-train-v1`; `dataset_names()` lists the published ones.
+
+    Returns:
+        LeRobot's own data set; `lerobot-train --dataset.repo_id=kitchen_prefs/<name>` reads it too.
+
+    Raises:
+        ValueError: If there is no such data set, or the one on disk is incomplete, damaged or of
+            another version.
+        OSError: If it cannot be written.
+    """
+    root = make_dataset(name)
+    from lerobot.datasets import LeRobotDataset  # here, because it takes seconds to import
+
+    return LeRobotDataset(content_of(name).repo_id, root=root)
+
+
+def make_dataset(name: str, workers: int | None = None) -> Path:
+    """Make a data set if it is not there.
+
+    Processes that ask for the same one at once wait for the first.
+
+    Args:
+        name: The data set's name.
+        workers: How many processes; None takes all cores.
+
+    Returns:
+        The data set's folder.
+
+    Raises:
+        ValueError: If there is no such data set, or the one on disk is incomplete, damaged or of
+            another version.
+        OSError: If it cannot be written; nothing is left behind.
+    """
+    content = content_of(name)
+    root = dataset_root(content.name)
+    try:
+        if not root.exists():
+            root.parent.mkdir(parents=True, exist_ok=True)
+            with FileLock(root.with_name(f".{root.name}.lock")):
+                if not root.exists():
+                    _make(content, root, workers)
+    except (OSError, BrokenExecutor) as error:
+        raise OSError(
+            f"The data set {content.name} could not be made in {root.parent} ({error}); make room "
+            "or let the environment variable HF_LEROBOT_HOME name another folder."
+        ) from error
+    manifest = read_manifest(content.name, root)
+    if published_fingerprint(content.name) not in (None, manifest["fingerprint"]):
+        warnings.warn(
+            f"The data set {content.name} in {root} differs from the published one, so scores on "
+            "it do not compare; delete the folder and ask for the data set again.",
+            stacklevel=2,
+        )
+    return root
+
+
+def _make(content: Content, root: Path, workers: int | None) -> None:
+    from kitchen_prefs.datasets.writing import write_dataset  # imports LeRobot, which takes seconds
+
+    unfinished = root.with_name(f".{root.name}.unfinished")
+    shutil.rmtree(unfinished, ignore_errors=True)  # of a process that was killed
+    try:
+        write_dataset(content, unfinished, workers)
+        unfinished.rename(root)
+    finally:
+        shutil.rmtree(unfinished, ignore_errors=True)

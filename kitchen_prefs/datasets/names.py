@@ -1,0 +1,96 @@
+"""The names of the data sets, what each holds and where it lies."""
+
+import os
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+from huggingface_hub.constants import HF_HOME
+
+from kitchen_prefs.splits import DATA_VERSION, HELD_OUT_PEOPLE, SEEN_PEOPLE, SPLITS, suggest
+
+NAMESPACE = "kitchen_prefs"
+
+# dishwasher-<split>-v1, dishwasher-train-all-v1, or dishwasher-train-p<1..7>-d<1..80>-v1: the first
+# p preferences of train with d demonstrations each.
+GRAMMAR = re.compile(
+    rf"(?:{NAMESPACE}/)?dishwasher-(?:(?P<split>{'|'.join(SPLITS)})|(?P<all>train-all)"
+    r"|train-p(?P<preferences>[1-7])-d(?P<demonstrations>[1-9]|[1-7][0-9]|80))-v(?P<version>[0-9]+)"
+)
+
+
+@dataclass(frozen=True)
+class Content:
+    """What a data set holds.
+
+    Attributes:
+        name: The data set's name, such as `dishwasher-train-v1`.
+        sessions: The split and the index of each episode's session.
+        purpose: What it is for, in a few words.
+    """
+
+    name: str
+    sessions: tuple[tuple[str, int], ...]
+    purpose: str
+
+    @property
+    def repo_id(self) -> str:
+        """The name that LeRobot's commands take."""
+        return f"{NAMESPACE}/{self.name}"
+
+
+def dataset_names() -> tuple[str, ...]:
+    """The published data sets: one a split, and `dishwasher-train-all-v1`."""
+    return tuple(f"dishwasher-{part}-v{DATA_VERSION}" for part in (*SPLITS, "train-all"))
+
+
+def content_of(name: str) -> Content:
+    """What a data set holds.
+
+    Args:
+        name: The data set's name, with or without `kitchen_prefs/` before it.
+
+    Raises:
+        ValueError: If no data set has this name, or only one of another version.
+    """
+    found = GRAMMAR.fullmatch(name)
+    if found is None:
+        raise ValueError(
+            f"There is no data set {name!r}. {suggest(name, dataset_names())} Subsets of train are "
+            f"named like dishwasher-train-p4-d40-v{DATA_VERSION}: 1 to 7 preferences, 1 to 80 "
+            "demonstrations of each."
+        )
+    name = name.removeprefix(f"{NAMESPACE}/")
+    if found["version"] != str(DATA_VERSION):
+        right = name.removesuffix(found["version"]) + str(DATA_VERSION)
+        raise ValueError(
+            f"This version of kitchen_prefs makes data of version {DATA_VERSION}, so not {name!r}; "
+            f"ask for {right!r}, or install the version that made the other."
+        )
+    if found["all"]:
+        held_out = _sessions("prompts", HELD_OUT_PEOPLE, 80)
+        purpose = "training of privileged baselines on all twelve preferences"
+        return Content(name, _sessions("train", SEEN_PEOPLE, 80) + held_out, purpose)
+    if found["split"]:
+        split = SPLITS[found["split"]]
+        return Content(name, tuple((split.name, i) for i in range(split.sessions)), split.purpose)
+    preferences, demonstrations = int(found["preferences"]), int(found["demonstrations"])
+    purpose = f"training on {preferences} preferences, {demonstrations} demonstrations each"
+    sessions = _sessions("train", SEEN_PEOPLE[:preferences], demonstrations)
+    return Content(name, sessions, purpose)
+
+
+def dataset_root(name: str) -> Path:
+    """The folder of a data set, in `$HF_LEROBOT_HOME` as LeRobot itself finds it."""
+    # LeRobot's own rule (lerobot.utils.constants), repeated because importing it takes seconds.
+    home = Path(os.environ.get("HF_LEROBOT_HOME", Path(HF_HOME) / "lerobot")).expanduser()
+    return home / NAMESPACE / name
+
+
+def _sessions(split: str, people: tuple[int, ...], most: int) -> tuple[tuple[str, int], ...]:
+    """The first sessions of some people, person by person."""
+    chosen = []
+    for person in people:
+        sessions = [i for i, other in enumerate(SPLITS[split].people) if other == person]
+        chosen += [(split, i) for i in sessions[:most]]
+    return tuple(chosen)

@@ -1,0 +1,196 @@
+"""Write a data set in LeRobot's format 3.0, on all cores.
+
+Processes demonstrate the sessions and compute the statistics of each episode; this process writes.
+The files are those that `LeRobotDataset.add_frame` and `save_episode` would write, which take
+several times as long: they convert value by value and rewrite the statistics after each episode.
+"""
+
+import multiprocessing
+import os
+import signal
+import sys
+import threading
+from collections.abc import Iterator
+from concurrent.futures import ProcessPoolExecutor
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pyarrow as pa
+import pyarrow.parquet as pq
+from lerobot.datasets import CODEBASE_VERSION, aggregate_stats
+from lerobot.datasets.compute_stats import compute_episode_stats
+from lerobot.datasets.feature_utils import create_empty_dataset_info, get_hf_features_from_features
+from lerobot.datasets.io_utils import write_info, write_stats, write_tasks
+from lerobot.datasets.utils import DEFAULT_DATA_PATH, DEFAULT_EPISODES_PATH
+from lerobot.utils.constants import DEFAULT_FEATURES
+from lerobot.utils.utils import flatten_dict
+from tqdm import tqdm
+
+from kitchen_prefs.datasets.cards import card
+from kitchen_prefs.datasets.columns import FEATURES, FPS, ROBOT_TYPE, columns_of
+from kitchen_prefs.datasets.manifest import write_manifest
+from kitchen_prefs.datasets.names import Content
+from kitchen_prefs.demonstrations import demonstrate
+from kitchen_prefs.sessions import make_session
+
+ALL_FEATURES = {**FEATURES, **DEFAULT_FEATURES}
+FIRST_FILE = {"chunk_index": 0, "file_index": 0}  # each data set is smaller than one file may be
+EPISODES_A_TASK = 4  # enough to make passing them between processes cheap, few enough to share out
+
+Stats = dict[str, dict[str, np.ndarray]]
+
+
+@dataclass(frozen=True)
+class Episode:
+    """One demonstrated episode.
+
+    Attributes:
+        columns: As from `columns_of`.
+        task: The preference in words.
+        stats: LeRobot's statistics of the columns.
+    """
+
+    columns: dict[str, np.ndarray]
+    task: str
+    stats: Stats
+
+
+def write_dataset(content: Content, root: Path, workers: int | None = None) -> None:
+    """Write a data set; the files do not depend on the number of workers.
+
+    Args:
+        content: Which sessions to demonstrate.
+        root: A folder that does not exist yet.
+        workers: How many processes; None takes all cores.
+
+    Raises:
+        OSError: If the files cannot be written.
+    """
+    data = root / DEFAULT_DATA_PATH.format(**FIRST_FILE)
+    data.parent.mkdir(parents=True)
+    schema = _parquet_schema()
+    tasks: dict[str, int] = {}
+    stats: list[Stats] = []
+    rows: list[dict] = []
+    with (
+        _demonstrated(content, workers) as episodes,
+        pq.ParquetWriter(data, schema, compression="snappy") as file,
+    ):
+        for episode in tqdm(episodes, content.name, len(content.sessions), unit="episode"):
+            start = rows[-1]["dataset_to_index"] if rows else 0
+            task_index = tasks.setdefault(episode.task, len(tasks))
+            bookkeeping = _bookkeeping(len(rows), start, len(episode.columns["action"]), task_index)
+            stats.append(episode.stats | compute_episode_stats(bookkeeping, ALL_FEATURES))
+            rows.append(_episode_row(bookkeeping, episode.task, stats[-1]))
+            table = _table(episode.columns | bookkeeping, schema)
+            file.write_table(table)  # one row group an episode, as LeRobot has it
+    _write_meta(root, tasks, stats, rows)
+    manifest = write_manifest(content.name, root)
+    (root / "README.md").write_text(card(content, manifest, root))
+
+
+@contextmanager
+def _demonstrated(content: Content, workers: int | None) -> Iterator[Iterator[Episode]]:
+    """The episodes of a data set in order, demonstrated by other processes."""
+    # Forked processes start at once and need no `if __name__ == "__main__"` in the user's script.
+    context = multiprocessing.get_context("fork" if sys.platform == "linux" else "spawn")
+    with ProcessPoolExecutor(workers, context, initializer=_leave_with_parent) as pool:
+        try:
+            yield pool.map(_demonstrate, content.sessions, chunksize=EPISODES_A_TASK)
+        except BaseException:
+            pool.shutdown(wait=False, cancel_futures=True)
+            raise
+
+
+def _leave_with_parent() -> None:
+    """Let a worker end with its parent; one that outlived it would keep the data set's lock."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the parent's to handle
+    parent = multiprocessing.parent_process()
+    assert parent is not None
+
+    def leave() -> None:
+        parent.join()
+        os._exit(1)
+
+    threading.Thread(target=leave, daemon=True).start()
+
+
+def _demonstrate(session: tuple[str, int]) -> Episode:
+    demonstration = demonstrate(make_session(*session))
+    columns = columns_of(demonstration)
+    return Episode(columns, demonstration.task, compute_episode_stats(columns, ALL_FEATURES))
+
+
+def _bookkeeping(number: int, start: int, frames: int, task_index: int) -> dict[str, np.ndarray]:
+    """The columns that LeRobot adds to an episode."""
+    return {
+        "timestamp": np.arange(frames, dtype=np.float32) / FPS,
+        "frame_index": np.arange(frames),
+        "episode_index": np.full(frames, number),
+        "index": np.arange(start, start + frames),
+        "task_index": np.full(frames, task_index),
+    }
+
+
+def _episode_row(bookkeeping: dict[str, np.ndarray], task: str, stats: Stats) -> dict:
+    """An episode's row in meta/episodes."""
+    index = bookkeeping["index"]
+    flat_stats = {key: value.tolist() for key, value in flatten_dict({"stats": stats}).items()}
+    return {
+        "episode_index": int(bookkeeping["episode_index"][0]),
+        "tasks": [task],
+        "length": len(index),
+        **{f"data/{key}": value for key, value in FIRST_FILE.items()},
+        "dataset_from_index": int(index[0]),
+        "dataset_to_index": int(index[-1]) + 1,
+        **flat_stats,
+        **{f"meta/episodes/{key}": value for key, value in FIRST_FILE.items()},
+    }
+
+
+def _parquet_schema() -> pa.Schema:
+    """The columns' types, with a set as lists of lists.
+
+    LeRobot itself writes a set as an extension type, which its own `lerobot-edit-dataset` then
+    cannot merge; lists of lists it can.
+    """
+    schema = get_hf_features_from_features(ALL_FEATURES).arrow_schema
+    for i, field in enumerate(schema):
+        if isinstance(field.type, pa.ExtensionType):
+            schema = schema.set(i, field.with_type(field.type.storage_type))
+    return schema
+
+
+def _table(columns: dict[str, np.ndarray], schema: pa.Schema) -> pa.Table:
+    return pa.Table.from_arrays([_array(columns[f.name], f.type) for f in schema], schema=schema)
+
+
+def _array(values: np.ndarray, kind: pa.DataType) -> pa.Array:
+    flat = pa.array(values.ravel())
+    if values.ndim == 1:
+        return flat
+    if values.ndim == 2:
+        return pa.FixedSizeListArray.from_arrays(flat, type=kind)
+    frames, rows, width = values.shape
+    sets = pa.ListArray.from_arrays(np.arange(frames * rows + 1, dtype=np.int32) * width, flat)
+    return pa.ListArray.from_arrays(np.arange(frames + 1, dtype=np.int32) * rows, sets)
+
+
+def _write_meta(root: Path, tasks: dict[str, int], stats: list[Stats], rows: list[dict]) -> None:
+    info = create_empty_dataset_info(
+        CODEBASE_VERSION, FPS, ALL_FEATURES, use_videos=False, robot_type=ROBOT_TYPE
+    )
+    info.total_episodes = len(rows)
+    info.total_frames = rows[-1]["dataset_to_index"]
+    info.total_tasks = len(tasks)
+    info.splits = {"train": f"0:{len(rows)}"}  # LeRobot's word for all episodes of a data set
+    write_info(info, root)
+    write_stats(aggregate_stats(stats), root)
+    index = pd.Index(list(tasks), name="task")
+    write_tasks(pd.DataFrame({"task_index": list(tasks.values())}, index=index), root)
+    episodes = root / DEFAULT_EPISODES_PATH.format(**FIRST_FILE)
+    episodes.parent.mkdir(parents=True)
+    pq.write_table(pa.Table.from_pylist(rows), episodes)

@@ -1,0 +1,150 @@
+import json
+
+import numpy as np
+import pandas as pd
+import pyarrow as pa
+import pyarrow.parquet as pq
+import pytest
+
+from kitchen_prefs.datasets import dataset_root, make_dataset
+from kitchen_prefs.datasets.columns import fingerprint, read_columns, read_tasks
+from kitchen_prefs.datasets.manifest import write_manifest
+from kitchen_prefs.datasets.verification import verify_dataset
+
+SMALL = "dishwasher-train-p2-d1-v1"
+NOISY = "dishwasher-noisy-v1"
+
+
+@pytest.fixture
+def root(tmp_path, monkeypatch):
+    """A small data set to spoil."""
+    monkeypatch.setenv("HF_LEROBOT_HOME", str(tmp_path))
+    return make_dataset(SMALL)
+
+
+def test_a_data_set_that_was_made_here_is_right(root):
+    claims = list(verify_dataset(SMALL))
+    assert any("fingerprint" in claim for claim in claims)
+    assert any("PE 1 and ED 1" in claim for claim in claims)
+
+
+def test_a_data_set_that_is_not_there_is_told(root):
+    with pytest.raises(ValueError, match="kitchen-prefs datasets make dishwasher-val-v1"):
+        list(verify_dataset("dishwasher-val-v1"))
+
+
+def test_a_changed_value_is_found_by_the_fingerprint(root):
+    manifest = (root / "meta" / "kitchen_prefs.json").read_text()
+    spoil(root, "next.reward", 0, 1)
+    honest = write_manifest(SMALL, root)
+    recorded = json.loads(manifest)["fingerprint"]
+    manifest = honest | {"fingerprint": recorded}
+    (root / "meta" / "kitchen_prefs.json").write_text(json.dumps(manifest))
+    with pytest.raises(ValueError, match="its fingerprint is not the one"):
+        list(verify_dataset(SMALL))
+
+
+def test_a_data_set_other_than_the_published_one_is_found(root, monkeypatch):
+    published = "kitchen_prefs.datasets.verification.published_fingerprint"
+    monkeypatch.setattr(published, lambda name: "0" * 64)
+    with pytest.raises(ValueError, match="differs from the published data set"):
+        list(verify_dataset(SMALL))
+
+
+@pytest.mark.parametrize(
+    ("column", "frame", "value", "said"),
+    [
+        ("frame_index", 3, 5, "frame_index does not count up"),
+        ("index", 3, 5, "index does not count up"),
+        ("episode_index", 0, 1, "episode_index does not count up"),
+        ("task_index", 0, 9, "a task index has no task"),
+        ("action", 4, np.full(7, np.nan, np.float32), "holds NaN"),
+        ("chosen_index", 2, 72, "outside the instance set"),
+        ("chosen_index", 2, -1, "outside the instance set"),
+        ("chosen_index", 2, 71, "may not choose"),
+        ("action", 4, np.ones(7, np.float32), "action of frame 4 is not the pose"),
+        ("preference", 5, 3, "episode 0 does not have the preference"),
+        ("task_index", 5, 1, "task of episode 0 is not its preference"),
+    ],
+)
+def test_a_wrong_value_is_found(root, column, frame, value, said):
+    spoil(root, column, frame, value)
+    write_manifest(SMALL, root)
+    with pytest.raises(ValueError, match=said):
+        list(verify_dataset(SMALL))
+
+
+@pytest.mark.parametrize("kind", ["min", "max", "mean", "std"])
+def test_wrong_statistics_are_found(root, kind):
+    path = root / "meta" / "stats.json"
+    stats = json.loads(path.read_text())
+    stats["action"][kind][1] += 0.01
+    path.write_text(json.dumps(stats))
+    write_manifest(SMALL, root)
+    with pytest.raises(ValueError, match=f"the recorded {kind} of the column action"):
+        list(verify_dataset(SMALL))
+
+
+def test_a_task_in_other_words_is_found(root):
+    tasks = read_tasks(root)
+    index = pd.Index(["Load it as you like.", *tasks[1:]], name="task")
+    frame = pd.DataFrame({"task_index": range(len(tasks))}, index=index)
+    frame.to_parquet(root / "meta" / "tasks.parquet")
+    write_manifest(SMALL, root)
+    with pytest.raises(ValueError, match="task of episode 0 is not its preference in words"):
+        list(verify_dataset(SMALL))
+
+
+def test_a_demonstration_that_does_not_load_the_dishwasher_is_found(root):
+    """The last decision, which closes the door, becomes one that pulls a rack out again."""
+    columns = read_columns(root)
+    last = int(np.flatnonzero(columns["next.done"])[0])
+    rows = columns["observation.instances"][last]
+    other = (columns["chosen_index"][last] + 1) % 3
+    spoil(root, "chosen_index", last, other)
+    spoil(root, "action", last, rows[other, 3:10])
+    write_manifest(SMALL, root)
+    with pytest.raises(ValueError, match="episode 0 does not load the dishwasher"):
+        list(verify_dataset(SMALL))
+
+
+@pytest.mark.slow
+def test_the_noisy_data_set_is_right(tmp_path, monkeypatch):
+    monkeypatch.setenv("HF_LEROBOT_HOME", str(tmp_path))
+    make_dataset(NOISY)
+    assert list(verify_dataset(NOISY))
+
+
+def test_the_fingerprint_depends_on_values_and_order_but_not_on_files(root):
+    columns, tasks = read_columns(root), read_tasks(root)
+    original = fingerprint(columns, tasks)
+    rewritten = pq.read_table(data_file(root))
+    pq.write_table(rewritten, data_file(root), compression="zstd")
+    assert fingerprint(read_columns(root), tasks) == original
+    reversed_columns = {name: values[::-1] for name, values in columns.items()}
+    assert fingerprint(reversed_columns, tasks) != original
+    assert fingerprint(columns, tasks[::-1]) != original
+
+
+def data_file(root):
+    return root / "data" / "chunk-000" / "file-000.parquet"
+
+
+def spoil(root, column, frame, value):
+    """Change one frame of a column, and make the statistics fit, to hide it from other checks."""
+    table = pq.read_table(data_file(root))
+    values = read_columns(root)[column].copy()
+    values[frame] = value
+    position = table.schema.get_field_index(column)
+    changed = pa.array(values.tolist(), table.schema.field(position).type)
+    pq.write_table(table.set_column(position, column, changed), data_file(root))
+    stats = json.loads((root / "meta" / "stats.json").read_text())
+    flat = values.reshape(len(values), -1).astype(np.float64)
+    for kind in ("min", "max", "mean", "std"):
+        stats[column][kind] = getattr(np, kind)(flat, axis=0).tolist()
+    (root / "meta" / "stats.json").write_text(json.dumps(stats))
+
+
+def test_the_folder_is_lerobots(tmp_path, monkeypatch):
+    monkeypatch.setenv("HF_LEROBOT_HOME", str(tmp_path))
+    assert dataset_root(SMALL) == tmp_path / "kitchen_prefs" / SMALL
