@@ -1,16 +1,16 @@
 """The kitchen's measures, in metres and radians.
 
-x runs along the counter to the right, y from the cabinets' fronts into the wall, z up. The dishwasher
-stands at x = 0 and opens towards -y. Everything here is plain numbers: no MuJoCo is needed to know
-where things are.
+x runs along the counter to the right, y from the cabinets' fronts into the wall, z up. The
+dishwasher stands at x = 0 and opens towards -y. Everything here is plain numbers: no MuJoCo is
+needed to know where things are.
 """
 
 from math import pi
 
 from kitchen_prefs.preferences import CATEGORIES
 
-# Full extents (x, y, z) of the upright dish: twice the half extents that were measured on the paper's
-# own assets (the cup's handle included).
+# Full extents (x, y, z) of the upright dish: twice the half extents that were measured on the
+# paper's own assets (the cup's handle included).
 EXTENTS = dict(
     zip(
         CATEGORIES,
@@ -37,7 +37,8 @@ SINK_SIZE = (0.52, 0.42, 0.18)  # opening x, opening y, depth
 SINK_POSITION = (-0.75, 0.31, 0.80)  # the one pose that a sunk dish takes
 
 # A rack's frame has its origin on the rack's floor, in the middle. Twice the original's area would
-# pack everything; 0.46 x 0.41 m would pack six dishes out of ten. This size fills up at eight to ten.
+# pack everything; 0.46 x 0.41 m would pack six dishes out of ten. This size fills up at eight to
+# ten.
 RACK_INNER = (0.54, 0.51)
 RACK_HEIGHT = 0.11  # of its wire walls
 RACK_CLOSED = {"bottom": (0.0, 0.31, 0.20), "top": (0.0, 0.31, 0.53)}

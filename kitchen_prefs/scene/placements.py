@@ -1,6 +1,6 @@
 """The committed placements: where dishes can stand in a rack, and which places block each other.
 
-`data/placements.npz` was made by `kitchen-prefs scene make-placements`; `data/placements.json` says how.
+`kitchen-prefs scene make-placements` made `data/placements.npz`; `data/placements.json` says how.
 Reading them needs no MuJoCo.
 """
 

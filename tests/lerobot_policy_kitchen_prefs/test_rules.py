@@ -5,18 +5,18 @@ import pytest
 import torch
 from lerobot.envs import preprocess_observation
 from lerobot.envs.utils import env_to_policy_features
-from lerobot_policy_kitchen_prefs.rules.configuration_rules import RulesConfig
-from lerobot_policy_kitchen_prefs.rules.modeling_rules import RulesPolicy
-from lerobot_policy_kitchen_prefs.rules.reading import (
-    nearest_training_preference,
-    symbolic_preference,
-)
 
 from kitchen_prefs.demonstrations import prompt_of
 from kitchen_prefs.environment_config import FEATURES_MAP, KitchenPrefsEnv
 from kitchen_prefs.metrics import edit_similarity, packing_efficiency, score
 from kitchen_prefs.preferences import HELD_OUT, SEEN
 from kitchen_prefs.sessions import make_session
+from lerobot_policy_kitchen_prefs.rules.configuration_rules import RulesConfig
+from lerobot_policy_kitchen_prefs.rules.modeling_rules import RulesPolicy
+from lerobot_policy_kitchen_prefs.rules.reading import (
+    nearest_training_preference,
+    symbolic_preference,
+)
 
 
 def make_rule(rule, env_config):

@@ -59,8 +59,7 @@ def _evaluate(checkpoint: Path, out: Path):
 
     actors = {"TTP": load_actor(str(checkpoint))}
     for rule in RULES:
-        track = "privileged" if rule == "expert" else "standard"
-        actors[rule] = load_actor(policy_type="rules", options=[f"--rule={rule}"], track=track)
+        actors[rule] = load_actor(policy_type="rules", options=[f"--rule={rule}"])
     evaluators = {
         name: Evaluator(actor, out / "evaluation" / name) for name, actor in actors.items()
     }

@@ -1,8 +1,8 @@
 """Configuration of the rules."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
-from lerobot.configs import PreTrainedConfig
+from lerobot.configs import NormalizationMode, PreTrainedConfig
 from lerobot.optim import AdamWConfig, OptimizerConfig
 
 from kitchen_prefs.environment_config import OBS_INSTANCES, OBS_PREFERENCE, OBS_PROMPT
@@ -34,6 +34,12 @@ class RulesConfig(PreTrainedConfig):
     rule: str = "symbolic"
     device: str | None = "cpu"
     push_to_hub: bool = False
+    # LeRobot's default processors ask for it; a rule reads poses as they are.
+    normalization_mapping: dict[str, NormalizationMode] = field(
+        default_factory=lambda: dict.fromkeys(
+            ("STATE", "ENV", "ACTION"), NormalizationMode.IDENTITY
+        )
+    )
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -50,6 +56,11 @@ class RulesConfig(PreTrainedConfig):
             if key not in (self.input_features or {}):
                 hint = " Use --env.track=privileged." if key == OBS_PREFERENCE else ""
                 raise ValueError(f"The rule {self.rule!r} needs {key!r}, which is not there.{hint}")
+
+    @property
+    def track(self) -> str:
+        """What the environment has to tell the policy; `kitchen-prefs evaluate` reads it."""
+        return "privileged" if self.rule == "expert" else "standard"
 
     @property
     def observation_delta_indices(self) -> None:

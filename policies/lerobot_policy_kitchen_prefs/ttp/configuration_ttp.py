@@ -1,0 +1,154 @@
+"""What can be chosen about TTP. The defaults are the paper's."""
+
+from dataclasses import dataclass, field
+
+from lerobot.configs import NormalizationMode, PreTrainedConfig
+from lerobot.optim import SGDConfig
+from lerobot.utils.constants import ACTION
+
+from kitchen_prefs.environment_config import OBS_INSTANCES
+from kitchen_prefs.instances import COLUMNS
+
+from .scheduler import ExponentialDecaySchedulerConfig
+
+POSE_SIZE = 7  # position and quaternion
+
+
+@PreTrainedConfig.register_subclass("ttp")
+@dataclass
+class TTPConfig(PreTrainedConfig):
+    """Configuration of the Transformer Task Planner (paper, section 2 and appendix "Training").
+
+    Attributes:
+        prompt_tokens: "states" makes the prompt's tokens from all rows of all decisions, with an
+            ACT token after each (the paper); "chosen" from the chosen row of each decision alone,
+            some forty tokens instead of a thousand.
+        relabel: Whether training permutes the categories, in prompt and situation together.
+        rounds: With how many prompts each pick decision of a batch is paired.
+        dim_pose: Size of the pose embedding.
+        dim_extents: Size of the category embedding.
+        dim_time: Size of the time embedding.
+        dim_marker: Size of the object-or-place embedding.
+        dim_feedforward: Hidden size of the feed-forward layers.
+        n_heads: Attention heads of each layer.
+        n_encoder_layers: Layers of the prompt encoder.
+        n_decoder_layers: Layers of the situation decoder.
+        use_slots: Whether slot attention reduces the encoded prompt to `num_slots` tokens.
+        num_slots: Length H of the preference embedding.
+        slot_iterations: Rounds of slot attention.
+        time_encoding: "table" looks the decision's index up (the paper); "fourier" expands it, so
+            that an index that training never saw has an embedding too.
+        situation_time: Whether the situation's rows tell the decision's index, as the paper's do.
+        pre_norm: Whether layers normalise before each sub-layer instead of after it.
+        pointer: "inputs" compares the ACT token's output with the embeddings of the rows (the
+            paper); "outputs" with learned projections of the decoder's outputs at the rows.
+        geometric_attention: Whether attention also sees how alike and how near instances are.
+        avoid_repeats: Whether the policy never makes the same choice twice in the same set.
+    """
+
+    normalization_mapping: dict[str, NormalizationMode] = field(
+        default_factory=lambda: dict.fromkeys(
+            ("STATE", "ENV", "ACTION"), NormalizationMode.IDENTITY
+        )
+    )
+
+    # The prompt and its pairing with situations.
+    prompt_tokens: str = "states"
+    relabel: bool = False
+    rounds: int = 1
+
+    # Architecture: 128 + 64 + 32 + 32 = 256 (paper, appendix "Training").
+    dim_pose: int = 128
+    dim_extents: int = 64
+    dim_time: int = 32
+    dim_marker: int = 32
+    dim_feedforward: int = 512
+    n_heads: int = 2
+    n_encoder_layers: int = 2
+    n_decoder_layers: int = 2
+    use_slots: bool = True
+    num_slots: int = 50
+    slot_iterations: int = 3
+
+    # Departures from the paper, off by default.
+    time_encoding: str = "table"
+    situation_time: bool = True
+    pre_norm: bool = False
+    pointer: str = "inputs"
+    geometric_attention: bool = False
+    avoid_repeats: bool = False
+
+    # Training preset (paper, appendix "Training"). The paper names no gradient clipping; LeRobot's
+    # default norm of 10 is never reached by a healthy run.
+    optimizer_lr: float = 0.01
+    optimizer_momentum: float = 0.9
+    optimizer_dampening: float = 0.1
+    optimizer_weight_decay: float = 1e-4
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        for name, choices in (
+            ("prompt_tokens", ("states", "chosen")),
+            ("time_encoding", ("table", "fourier")),
+            ("pointer", ("inputs", "outputs")),
+        ):
+            if getattr(self, name) not in choices:
+                raise ValueError(f"{name} is {getattr(self, name)!r}; it must be one of {choices}.")
+        if self.dim % self.n_heads:
+            raise ValueError(f"{self.n_heads} heads cannot share {self.dim} dimensions equally.")
+        if self.rounds < 1:
+            raise ValueError("rounds counts the prompts of a pick decision; it is at least 1.")
+
+    @property
+    def dim(self) -> int:
+        """The size d of an instance's embedding."""
+        return self.dim_pose + self.dim_extents + self.dim_time + self.dim_marker
+
+    def get_optimizer_preset(self) -> SGDConfig:
+        """The paper's optimiser."""
+        return SGDConfig(
+            lr=self.optimizer_lr,
+            momentum=self.optimizer_momentum,
+            dampening=self.optimizer_dampening,
+            weight_decay=self.optimizer_weight_decay,
+        )
+
+    def get_scheduler_preset(self) -> ExponentialDecaySchedulerConfig:
+        """The paper's schedule: 0.9995 per 10 updates."""
+        return ExponentialDecaySchedulerConfig()
+
+    def validate_features(self) -> None:
+        """Check that there are sets of instances to look at and poses to return.
+
+        Raises:
+            ValueError: If a feature is missing or has another shape.
+        """
+        instances = (self.input_features or {}).get(OBS_INSTANCES)
+        if instances is None or tuple(instances.shape)[1:] != (COLUMNS,):
+            raise ValueError(
+                f"TTP reads sets of instances, but the feature {OBS_INSTANCES!r} of shape "
+                f"(N, {COLUMNS}) is {'missing' if instances is None else f'of shape {tuple(instances.shape)}'}; "
+                "use a data set or an environment of kitchen_prefs."
+            )
+        action = (self.output_features or {}).get(ACTION)
+        if action is None or tuple(action.shape) != (POSE_SIZE,):
+            raise ValueError(
+                f"TTP answers with a pose, but the feature {ACTION!r} of shape ({POSE_SIZE},) is "
+                f"{'missing' if action is None else f'of shape {tuple(action.shape)}'}; "
+                "use a data set or an environment of kitchen_prefs."
+            )
+
+    @property
+    def observation_delta_indices(self) -> None:
+        """TTP looks at one decision."""
+        return None
+
+    @property
+    def action_delta_indices(self) -> None:
+        """TTP makes one decision."""
+        return None
+
+    @property
+    def reward_delta_indices(self) -> None:
+        """TTP sees no reward."""
+        return None

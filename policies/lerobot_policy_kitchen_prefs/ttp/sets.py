@@ -1,0 +1,68 @@
+"""Batches of instance sets: which rows are real, which can be chosen, which was chosen."""
+
+import torch
+from torch import Tensor
+
+from kitchen_prefs.instances import IS_OBJECT, IS_PLACE, POSE
+
+
+def is_real(rows: Tensor) -> Tensor:
+    """Which rows, (..., D), are objects or places, not padding, (...) bool."""
+    return (rows[..., IS_OBJECT] + rows[..., IS_PLACE]) > 0
+
+
+def is_place_decision(sets: Tensor) -> Tensor:
+    """Which sets, (B, N, 13), have places to choose from, (B,) bool."""
+    return (sets[..., IS_PLACE] > 0).any(dim=1)
+
+
+def choosable(sets: Tensor) -> Tensor:
+    """The rows that decisions may choose: the places if there are any, else the objects.
+
+    Args:
+        sets: Sets, (B, N, 13).
+
+    Returns:
+        A mask, (B, N) bool.
+    """
+    is_place, is_object = sets[..., IS_PLACE] > 0, sets[..., IS_OBJECT] > 0
+    return is_place.where(is_place_decision(sets)[:, None], is_object)
+
+
+def chosen_rows(sets: Tensor, actions: Tensor) -> Tensor:
+    """Find the rows whose poses the actions are.
+
+    Args:
+        sets: Sets, (B, N, 13).
+        actions: Exact copies of the chosen rows' poses, (B, 7).
+
+    Returns:
+        The rows, (B,) int64.
+
+    Raises:
+        ValueError: If an action is not the pose of a row that could be chosen.
+    """
+    matches = (sets[..., POSE] == actions[:, None]).all(dim=-1) & choosable(sets)  # (B, N)
+    if not matches.any(dim=1).all():
+        raise ValueError(
+            "An action of the data set is not the pose of any row that could be chosen; look at it "
+            "with `kitchen-prefs datasets verify`, and normalise neither sets nor actions."
+        )
+    return matches.int().argmax(dim=1)
+
+
+def keep(sets: Tensor, kept: Tensor) -> tuple[Tensor, Tensor]:
+    """Move the kept rows of each set to its front, in their order, and cut the rest off.
+
+    Args:
+        sets: Sets, (B, N, D).
+        kept: The rows to keep, (B, N) bool.
+
+    Returns:
+        The kept rows, (B, M, D), M the largest number of them, and which are real, (B, M) bool.
+    """
+    counts = kept.sum(dim=1)  # (B,)
+    longest = int(counts.max())
+    order = kept.logical_not().byte().argsort(dim=1, stable=True)[:, :longest]  # (B, M)
+    mask = torch.arange(longest, device=sets.device) < counts[:, None]  # (B, M)
+    return sets.gather(1, order[..., None].expand(-1, -1, sets.shape[-1])), mask

@@ -1,0 +1,160 @@
+"""LeRobot's own commands, as a user runs them: train, resume, fine-tune and evaluate."""
+
+import json
+import os
+import subprocess
+import sys
+
+import pytest
+
+from kitchen_prefs.datasets import make_dataset
+from kitchen_prefs.records import read_episodes
+from lerobot_policy_kitchen_prefs.recipe_files import recipe_file
+
+DATASET = "dishwasher-train-p2-d3-v1"
+TRAIN = "lerobot.scripts.lerobot_train"
+EVAL = "lerobot.scripts.lerobot_eval"
+# A small TTP, so that a step takes milliseconds.
+SMALL_TTP = ("--policy.dim_pose=16", "--policy.dim_extents=8", "--policy.dim_time=4")
+COMMON = ("--policy.device=cpu", "--policy.push_to_hub=false", "--num_workers=0", "--log_freq=1")
+
+
+@pytest.fixture(scope="module")
+def home(tmp_path_factory):
+    """A home with a small data set to train on."""
+    folder = tmp_path_factory.mktemp("home")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("HF_LEROBOT_HOME", str(folder))
+        make_dataset(DATASET)
+    return folder
+
+
+def run(home, module, *arguments):
+    environment = os.environ | {
+        "HF_LEROBOT_HOME": str(home),
+        "HF_DATASETS_CACHE": str(home / "cache"),
+        "HF_HUB_OFFLINE": "1",
+        "OMP_NUM_THREADS": "1",
+    }
+    command = [sys.executable, "-m", module, *map(str, arguments)]
+    done = subprocess.run(
+        command, env=environment, cwd=home, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr[-3000:]
+    return done.stderr + done.stdout
+
+
+@pytest.fixture(scope="module")
+def trained(home):
+    """A run of four steps that saved a checkpoint after two."""
+    data = f"--dataset.repo_id=kitchen_prefs/{DATASET}"
+    sizes = (*SMALL_TTP, "--batch_size=4", "--steps=4", "--save_freq=2")
+    output = f"--output_dir={home / 'run'}"
+    log = run(home, TRAIN, "--policy.type=ttp", data, output, *sizes, *COMMON)
+    assert "step:4" in log
+    return home / "run"
+
+
+@pytest.mark.slow
+def test_ttp_resumes_where_it_stopped(home, trained):
+    config = trained / "checkpoints" / "last" / "pretrained_model" / "train_config.json"
+    log = run(home, TRAIN, f"--config_path={config}", "--resume=true", "--steps=6")
+    assert "step:6" in log
+    assert "step:4 " not in log
+    step = json.loads((trained / "checkpoints/last/training_state/training_step.json").read_text())
+    assert step["step"] == 6
+
+
+@pytest.mark.slow
+def test_ttp_fine_tunes_from_a_checkpoint(home, trained):
+    log = run(
+        home,
+        TRAIN,
+        f"--policy.path={trained}/checkpoints/000002/pretrained_model",
+        f"--dataset.repo_id=kitchen_prefs/{DATASET}",
+        f"--output_dir={home / 'fine'}",
+        "--batch_size=4",
+        "--steps=2",
+        *COMMON,
+    )
+    assert "step:2" in log
+
+
+@pytest.mark.slow
+def test_lerobot_eval_plays_a_checkpoint(home, trained):
+    out = home / "eval"
+    run(
+        home,
+        EVAL,
+        f"--policy.path={trained}/checkpoints/000004/pretrained_model",
+        "--env.type=kitchen_prefs",
+        "--env.task=val",
+        "--eval.n_episodes=3",
+        "--eval.batch_size=2",
+        "--policy.device=cpu",
+        f"--output_dir={out}",
+    )
+    info = json.loads((out / "eval_info.json").read_text())
+    assert info["overall"]["n_episodes"] == 3
+
+
+@pytest.mark.slow
+def test_evaluate_plays_a_checkpoint_and_the_expert(home, trained):
+    checkpoint = f"--policy.path={trained}/checkpoints/000004/pretrained_model"
+    for policy in ((checkpoint,), ("--policy.type=rules", "--policy.rule=expert")):
+        out = home / policy[-1].replace("/", "-")
+        arguments = ("evaluate", *policy, "--split=noisy", f"--out={out}", "--batch-size=30")
+        run(home, "kitchen_prefs.cli", *arguments)
+        assert len(read_episodes(out / "noisy.jsonl")) == 60
+
+
+@pytest.mark.slow
+def test_lerobot_eval_gives_the_expert_full_success(home):
+    run(
+        home,
+        EVAL,
+        "--policy.type=rules",
+        "--policy.rule=expert",
+        "--env.type=kitchen_prefs",
+        "--env.track=privileged",
+        "--env.task=unseen_both",
+        "--eval.n_episodes=5",
+        "--eval.batch_size=3",
+        f"--output_dir={home / 'expert'}",
+    )
+    info = json.loads((home / "expert" / "eval_info.json").read_text())
+    assert info["overall"]["pc_success"] == 100
+
+
+@pytest.mark.slow
+def test_lerobots_act_trains_on_the_same_data(home):
+    log = run(
+        home,
+        TRAIN,
+        "--policy.type=act",
+        "--policy.chunk_size=1",
+        "--policy.n_action_steps=1",
+        "--policy.dim_model=32",
+        "--policy.dim_feedforward=32",
+        f"--dataset.repo_id=kitchen_prefs/{DATASET}",
+        f"--output_dir={home / 'act'}",
+        "--batch_size=4",
+        "--steps=2",
+        *COMMON,
+    )
+    assert "step:2" in log
+
+
+@pytest.mark.slow
+def test_the_quickstarts_recipe_trains(home):
+    log = run(
+        home,
+        TRAIN,
+        f"--config_path={recipe_file('ttp_quick')}",
+        f"--dataset.repo_id=kitchen_prefs/{DATASET}",
+        f"--output_dir={home / 'quick'}",
+        "--batch_size=4",
+        "--steps=2",
+        "--log_freq=1",
+    )
+    assert "accuracy:" in log

@@ -1,0 +1,63 @@
+"""The README: its Python runs, and its commands name what exists."""
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from kitchen_prefs.splits import SPLITS
+
+ROOT = Path(__file__).parents[1]
+README = (ROOT / "README.md").read_text()
+
+
+def blocks(language):
+    return re.findall(rf"```{language}\n(.*?)```", README, re.DOTALL)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("block", blocks("python"), ids=lambda block: block.splitlines()[0])
+def test_python_runs_as_printed(block, tmp_path):
+    environment = os.environ | {"HF_HOME": str(tmp_path), "HF_HUB_OFFLINE": "1"}
+    environment.pop("HF_LEROBOT_HOME", None)
+    done = subprocess.run(
+        [sys.executable, "-c", block],
+        env=environment,
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    assert done.stdout
+
+
+def test_the_environment_needs_ten_lines_and_no_lerobot():
+    block = next(block for block in blocks("python") if "gymnasium.make" in block)
+    code = [line for line in block.splitlines()[2:] if line.strip()]
+    assert len(code) <= 10
+    assert "lerobot" not in block
+
+
+def test_commands_name_recipes_and_splits_that_exist():
+    commands = "\n".join(blocks("bash"))
+    for path in re.findall(r"--config_path=(\S+)", commands):
+        assert (ROOT / path).exists()
+    for names in re.findall(r"--(?:split|env\.task)=(\S+)", commands):
+        assert set(names.split(",")) <= set(SPLITS)
+
+
+def test_the_splits_table_is_right():
+    rows = re.findall(r"\| `(\w+)` \| [^|]+ \| [^|]+ \| (\d+) \|", README)
+    assert rows
+    assert {name: int(size) for name, size in rows}.items() <= {
+        name: split.sessions for name, split in SPLITS.items()
+    }.items()
+
+
+def test_links_lead_somewhere():
+    for target in re.findall(r"\]\((?!http)([^)#]+)\)", README):
+        assert (ROOT / target).exists(), target
