@@ -181,7 +181,8 @@ def _door_pose(angle: float) -> tuple[float, ...]:
     y, z = -thickness / 2, height / 2  # the closed door's centre, from the hinge
     cos, sin = np.cos(angle), np.sin(angle)
     position = (x, hinge_y + cos * y - sin * z, hinge_z + sin * y + cos * z)
-    return (*position, np.cos(angle / 2), np.sin(angle / 2), 0, 0)
+    pose = (*position, np.cos(angle / 2), np.sin(angle / 2), 0, 0)
+    return tuple(round(float(value), 6) for value in pose)
 
 
 EXTENTS = np.array(

@@ -27,6 +27,7 @@ from kitchen_prefs.splits import DATA_VERSION, OTHER_PEOPLE, SEEN_PEOPLE, get_sp
 LEAST_PRESENT = 0.5  # at least half of the dishes stand there at the start
 DISH_GAP = 0.01  # m between dishes on the counter: fingers fit in
 COUNTER_MARGIN = 0.02  # m to the counter's edges and the sink's
+POSE_DECIMALS = 4  # a tenth of a millimetre: no machine's last digit shows in the data
 TRIES_PER_DISH = 200  # before the whole counter is laid anew
 
 
@@ -216,7 +217,8 @@ def _try_to_lay(category: np.ndarray, generator: np.random.Generator) -> np.ndar
             return None
         laid.append((corners, centre, radius[dish]))
         height = layout.COUNTER_HEIGHT + extents[dish, 2] / 2
-        poses[dish] = (*centre, height, np.cos(yaw / 2), 0, 0, np.sin(yaw / 2))
+        pose = (*centre, height, np.cos(yaw / 2), 0, 0, np.sin(yaw / 2))
+        poses[dish] = np.round(pose, POSE_DECIMALS)
     return poses
 
 

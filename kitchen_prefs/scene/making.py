@@ -29,7 +29,7 @@ TURN_WEIGHT = 0.05
 
 
 def make_placements(seed: int) -> Placements:
-    """Make the placements anew, on all cores; about two minutes on two.
+    """Make the placements anew, on all cores; about three minutes on two.
 
     Args:
         seed: Of every random drop.

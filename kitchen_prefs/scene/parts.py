@@ -24,7 +24,7 @@ MATERIALS = {
 # Texture, metres that one repetition covers, specular, shininess.
 TEXTURED = {
     "oak": (textures.oak_floor, 2.4, 0.15, 0.2),
-    "walnut": (textures.walnut, 0.9, 0.25, 0.3),
+    "walnut": (textures.walnut, 1.2, 0.25, 0.3),
     "beech": (textures.beech, 0.5, 0.15, 0.2),
     "tiles": (textures.tiles, 0.6, 0.35, 0.5),
 }

@@ -1,36 +1,31 @@
 """Pictures of the kitchen, drawn without a display.
 
 MuJoCo draws the furniture; the dishes of a state are added to each frame as meshes, so that one
-compiled model serves every session. Importing this module imports MuJoCo and OpenGL.
+compiled model serves every session.
 """
 
-import os
-import sys
+import numpy as np
+from scipy.spatial.transform import Rotation
 
-NO_DISPLAY = sys.platform == "linux" and not os.environ.get("DISPLAY")
-if NO_DISPLAY:
-    os.environ.setdefault("MUJOCO_GL", "egl")  # MuJoCo reads it once, when it is imported
+from kitchen_prefs.preferences import RACKS
+from kitchen_prefs.scene.layout import DOOR_OPEN_ANGLE, RACK_TRAVEL, SINK_POSITION, SINK_SIZE
+from kitchen_prefs.scene.opengl import NoOpenGLError, open_context
+from kitchen_prefs.scene.state import SceneState
 
-import mujoco  # noqa: E402
-import numpy as np  # noqa: E402
-from scipy.spatial.transform import Rotation  # noqa: E402
+try:
+    import mujoco
+except (ImportError, AttributeError) as error:  # with MUJOCO_GL set it loads OpenGL at once
+    raise NoOpenGLError from error
 
-from kitchen_prefs.preferences import RACKS  # noqa: E402
-from kitchen_prefs.scene.dishwasher import DOOR_JOINT, rack_joint  # noqa: E402
-from kitchen_prefs.scene.layout import (  # noqa: E402
-    DOOR_OPEN_ANGLE,
-    RACK_TRAVEL,
-    SINK_POSITION,
-    SINK_SIZE,
-)
-from kitchen_prefs.scene.model import CAMERA, Quality, kitchen_spec  # noqa: E402
-from kitchen_prefs.scene.state import SceneState  # noqa: E402
-from kitchen_prefs.scene.tableware import GLAZES, TRAY_MATERIAL, colour  # noqa: E402
+from kitchen_prefs.scene.dishwasher import DOOR_JOINT, rack_joint
+from kitchen_prefs.scene.model import CAMERA, Quality, kitchen_spec
+from kitchen_prefs.scene.tableware import GLAZES, TRAY_MATERIAL, colour
 
 QUALITIES = {
     "fast": Quality(samples=0, shadows=0, sides=8),  # for watching a rollout
     "fine": Quality(samples=8, shadows=4096, sides=28),  # for figures
 }
+MOST_GEOMS = 1000  # in a frame: the furniture has 300, a session at most twenty dishes
 SINK_PILE = 0.03  # m that each further dish in the sink lies higher
 
 
@@ -44,15 +39,25 @@ class Renderer:
 
     Raises:
         ValueError: If the quality is neither.
-        RuntimeError: If there is no OpenGL library to draw with.
+        NoOpenGLError: If there is no OpenGL library to draw with.
     """
 
     def __init__(self, width: int, height: int, quality: str) -> None:
         if quality not in QUALITIES:
             raise ValueError(f"A picture's quality is one of {sorted(QUALITIES)}, not {quality!r}.")
-        self._model = kitchen_spec(QUALITIES[quality]).compile()
+        spec = kitchen_spec(QUALITIES[quality])
+        spec.visual.global_.offwidth, spec.visual.global_.offheight = width, height
+        self._model = spec.compile()
         self._data = mujoco.MjData(self._model)
-        self._renderer = _open(self._model, width, height)
+        self._scene = mujoco.MjvScene(self._model, MOST_GEOMS)
+        self._options = mujoco.MjvOption()
+        self._camera = mujoco.MjvCamera()
+        self._camera.type = mujoco.mjtCamera.mjCAMERA_FIXED
+        self._camera.fixedcamid = self._model.camera(CAMERA).id
+        self._frame = mujoco.MjrRect(0, 0, width, height)
+        self._opengl = open_context(width, height)
+        self._drawing = mujoco.MjrContext(self._model, mujoco.mjtFontScale.mjFONTSCALE_100)
+        mujoco.mjr_setBuffer(mujoco.mjtFramebuffer.mjFB_OFFSCREEN, self._drawing)
 
     def render(self, state: SceneState) -> np.ndarray:
         """Draw a state.
@@ -63,8 +68,37 @@ class Renderer:
         Returns:
             The picture, (H, W, 3) uint8.
         """
-        self._move_joints(state)
-        self._renderer.update_scene(self._data, CAMERA)
+        self._arrange_furniture(state)
+        self._arrange_dishes(state)
+        self._opengl.make_current()  # another renderer may have drawn since
+        mujoco.mjr_render(self._frame, self._scene, self._drawing)
+        picture = np.empty((self._frame.height, self._frame.width, 3), dtype=np.uint8)
+        mujoco.mjr_readPixels(picture, None, self._frame, self._drawing)
+        return np.ascontiguousarray(np.flipud(picture))  # OpenGL counts rows from below
+
+    def close(self) -> None:
+        """Give the OpenGL context back."""
+        self._opengl.make_current()
+        self._drawing.free()
+        self._opengl.free()
+
+    def _arrange_furniture(self, state: SceneState) -> None:
+        self._data.joint(DOOR_JOINT).qpos = DOOR_OPEN_ANGLE * state.door_open
+        for rack, out in zip(RACKS, (state.bottom_out, state.top_out), strict=True):
+            self._data.joint(rack_joint(rack)).qpos = RACK_TRAVEL * out
+        mujoco.mj_kinematics(self._model, self._data)
+        mujoco.mj_camlight(self._model, self._data)
+        mujoco.mjv_updateScene(
+            self._model,
+            self._data,
+            self._options,
+            None,
+            self._camera,
+            mujoco.mjtCatBit.mjCAT_ALL,
+            self._scene,
+        )
+
+    def _arrange_dishes(self, state: SceneState) -> None:
         sunk = 0
         for number, (category, position, quaternion) in enumerate(state.dishes):
             place = np.asarray(position, dtype=float)
@@ -72,18 +106,6 @@ class Renderer:
                 place = place + _on_the_pile(sunk)
                 sunk += 1
             self._add_dish(number, category, place, quaternion)
-        return self._renderer.render()
-
-    def close(self) -> None:
-        """Give the OpenGL context back."""
-        self._renderer.close()
-
-    def _move_joints(self, state: SceneState) -> None:
-        self._data.joint(DOOR_JOINT).qpos = DOOR_OPEN_ANGLE * state.door_open
-        for rack, out in zip(RACKS, (state.bottom_out, state.top_out), strict=True):
-            self._data.joint(rack_joint(rack)).qpos = RACK_TRAVEL * out
-        mujoco.mj_kinematics(self._model, self._data)
-        mujoco.mj_camlight(self._model, self._data)
 
     def _add_dish(
         self, number: int, category: str, position: np.ndarray, quaternion: np.ndarray
@@ -92,8 +114,7 @@ class Renderer:
         mesh = self._model.mesh(category).id
         turn = Rotation.from_quat(quaternion, scalar_first=True)
         own_turn = Rotation.from_quat(self._model.mesh_quat[mesh], scalar_first=True)
-        scene = self._renderer.scene
-        geom = scene.geoms[scene.ngeom]
+        geom = self._scene.geoms[self._scene.ngeom]
         mujoco.mjv_initGeom(
             geom,
             type=mujoco.mjtGeom.mjGEOM_MESH,
@@ -106,18 +127,7 @@ class Renderer:
         geom.specular, geom.shininess = GLAZES[category].specular, GLAZES[category].shininess
         if category == "tray":
             geom.matid, geom.texcoord = self._model.material(TRAY_MATERIAL).id, 1
-        scene.ngeom += 1
-
-
-def _open(model: mujoco.MjModel, width: int, height: int) -> mujoco.Renderer:
-    try:
-        return mujoco.Renderer(model, height, width)
-    except (ImportError, RuntimeError, AttributeError, mujoco.FatalError) as error:
-        raise RuntimeError(
-            "Pictures need an OpenGL library that draws without a display: on Debian or Ubuntu, "
-            "`apt install libegl1 libegl-mesa0 libgl1-mesa-dri`. Everything but pictures works "
-            "without it."
-        ) from error
+        self._scene.ngeom += 1
 
 
 def _on_the_pile(below: int) -> np.ndarray:

@@ -25,6 +25,9 @@ TILT = np.deg2rad(5.0)  # four times the push of a rack that slides in within 4 
 TILT_TIME = 0.3  # s in each of four directions
 SLACK = (0.01, np.deg2rad(5.0))  # m, rad that a dish may move under the tilt
 
+BEYOND = 0.002  # m over the rack's inner edge: the wall's wires give as much
+BELOW = 0.02  # m that a rim may dip between the floor's wires
+
 # How far the dish's own axis may lean, in radians. Cups and glasses stand on their rims, bowls lean
 # on tines and walls; the axes of plates and trays lie level.
 INVERTED_LEAN = {"cup": 0.25, "glass": 0.25, "small bowl": 1.1, "big bowl": 1.1}
@@ -139,7 +142,7 @@ def rack_and_dish(category: str) -> mujoco.MjModel:
 
 
 def _random_turn(category: str, rng: np.random.Generator) -> Rotation:
-    """A rotation near to how the category stands in a rack."""
+    """A rotation near to how the category stands in a rack: upside down, or on its side."""
     spin = rng.uniform(-np.pi, np.pi)
     lean = rng.normal(0.0, 0.05)
     if category in ("cup", "glass"):
@@ -159,5 +162,7 @@ def _leans_little(category: str, turn: Rotation) -> bool:
 
 
 def _fits(points: np.ndarray) -> bool:
-    inside = np.abs(points[:, :2]).max(axis=0) <= np.array(RACK_INNER) / 2 + 0.002
-    return bool(inside.all() and points[:, 2].max() <= RACK_HEADROOM and points[:, 2].min() > -0.02)
+    """Whether a dish with these outermost points, (n, 3), lets the rack close."""
+    reach = np.abs(points[:, :2]).max(axis=0)
+    within = (reach <= np.array(RACK_INNER) / 2 + BEYOND).all()
+    return bool(within and points[:, 2].min() > -BELOW and points[:, 2].max() <= RACK_HEADROOM)

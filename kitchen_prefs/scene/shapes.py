@@ -192,6 +192,7 @@ def hull_points(category: str) -> np.ndarray:
 
 
 def _outermost(solid: Solid) -> np.ndarray:
+    """The corners of a box, or points on the rims and ends of a round solid, (n, 3)."""
     if solid.kind == "box":
         signs = np.array(np.meshgrid(*[(-1, 1)] * 3)).reshape(3, -1).T
         points = signs * solid.size
@@ -199,10 +200,8 @@ def _outermost(solid: Solid) -> np.ndarray:
         radius, half = solid.size
         angles = 2 * pi * np.arange(2 * SIDES) / (2 * SIDES)
         circle = radius * np.stack([np.cos(angles), np.sin(angles)], axis=1)
+        rims = [np.insert(circle, 2, height, axis=1) for height in (-half, half)]
         reach = half + (radius if solid.kind == "capsule" else 0.0)
-        points = np.concatenate(
-            [np.insert(circle, 2, sign * height, axis=1) for sign in (-1, 1) for height in (half,)]
-        )
-        points = np.concatenate([points, [[0.0, 0.0, reach], [0.0, 0.0, -reach]]])
+        points = np.concatenate([*rims, [[0.0, 0.0, reach], [0.0, 0.0, -reach]]])
     turn = Rotation.from_quat(solid.quaternion, scalar_first=True)
     return turn.apply(points) + solid.position

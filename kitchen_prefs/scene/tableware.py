@@ -38,7 +38,7 @@ GLAZES = {
     "glass": Glaze(
         ((0.62, 0.85, 0.92, 0.42), (0.70, 0.92, 0.80, 0.42), (0.85, 0.92, 0.95, 0.40)), 1.0, 0.9
     ),
-    "tray": Glaze(((0.60, 0.40, 0.27, 1.0), (0.92, 0.74, 0.52, 1.0)), 0.15, 0.2),
+    "tray": Glaze(((0.62, 0.45, 0.33, 1.0), (1.0, 0.88, 0.70, 1.0)), 0.15, 0.2),
     "small bowl": Glaze((SKY, CORAL, CREAM, TEAL), 0.6, 0.7),
     "big bowl": Glaze((SAGE, BLUE, YELLOW, PLUM), 0.6, 0.7),
     "small plate": Glaze((SKY, CREAM, SAGE, CORAL), 0.6, 0.7),

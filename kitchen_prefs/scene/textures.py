@@ -4,7 +4,7 @@ import numpy as np
 from scipy.ndimage import gaussian_filter1d, zoom
 
 SEED = 7  # of all textures; any other gives another piece of wood
-SIZE = 1024  # pixels along each side
+SIZE = 1024  # pixels along each side; every count of rows and columns divides it
 
 
 def oak_floor() -> np.ndarray:
@@ -14,7 +14,7 @@ def oak_floor() -> np.ndarray:
 
 def walnut() -> np.ndarray:
     """The staves of a worktop along x, (SIZE, SIZE, 3) uint8."""
-    return _planks((168, 116, 76), rows=12, tones=0.10, joints=0.90, seed=SEED + 1)
+    return _planks((168, 116, 76), rows=16, tones=0.10, joints=0.90, seed=SEED + 1)
 
 
 def beech() -> np.ndarray:

@@ -85,7 +85,7 @@ class GeometricScores(nn.Module):
     def __init__(self, start: list[tuple[float, float]]) -> None:
         """Start from an a and a b for each head, in 1 / m^2."""
         super().__init__()
-        self.sharpness = nn.Parameter(torch.tensor(start) / self.UNIT)  # (h, 2)
+        self.weights = nn.Parameter(torch.tensor(start) / torch.tensor([self.UNIT, self.UNIT, 10.0]))
 
     def forward(
         self, queries: Tensor, keys: Tensor, geometry: Tensor, memory_geometry: Tensor
@@ -102,15 +102,12 @@ class GeometricScores(nn.Module):
             The longer queries and keys, (B, h, N, d/h + 8) and (G, h, M, d/h + 8). What is added to
             the queries makes up for the square root by which attention divides scores.
         """
-        is_instance = (geometry != 0).any(dim=-1, keepdim=True).to(geometry.dtype)  # (B, N, 1)
-        sharpness = (self.UNIT * self.sharpness)[..., None, None]  # (h, 2, 1, 1)
-        extents, position = (
-            torch.cat([2 * part, -is_instance], dim=-1)[:, None] * sharpness[:, index]
-            for index, part in enumerate(geometry.split(3, dim=-1))
-        )  # (B, h, N, 4)
-        added = torch.cat([extents, position], dim=-1)  # (B, h, N, 8)
-        parts = memory_geometry.split(3, dim=-1)
-        squares = [torch.cat([p, p.square().sum(dim=-1, keepdim=True)], dim=-1) for p in parts]
-        to_keys = torch.cat(squares, dim=-1)[:, None].expand(-1, keys.shape[1], -1, -1)
+        one = torch.ones_like(geometry[..., :1])
+        a, b, c = self.weights[..., None, None].unbind(1)
+        e, p, o = geometry.split([3, 3, 1], dim=-1)
+        is_instance = ((e != 0).any(dim=-1, keepdim=True)).to(e.dtype)
+        added = torch.cat([self.UNIT * a * torch.cat([2 * e, -is_instance], -1)[:, None], self.UNIT * b * torch.cat([2 * p, -is_instance], -1)[:, None], 10*c * is_instance[:, None]], -1)
+        e, p, o = memory_geometry.split([3, 3, 1], dim=-1)
+        to_keys = torch.cat([e, e.square().sum(-1, keepdim=True), p, p.square().sum(-1, keepdim=True), o], -1)[:, None].expand(-1, keys.shape[1], -1, -1)
         scale = (queries.shape[-1] + added.shape[-1]) ** 0.5
         return torch.cat([queries, added * scale], dim=-1), torch.cat([keys, to_keys], dim=-1)

@@ -1,8 +1,9 @@
 """What can be chosen about TTP. The defaults are the paper's."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
-from lerobot.configs import NormalizationMode, PreTrainedConfig
+from lerobot.configs import NormalizationMode, PolicyFeature, PreTrainedConfig
 from lerobot.optim import SGDConfig
 from lerobot.utils.constants import ACTION
 
@@ -123,20 +124,8 @@ class TTPConfig(PreTrainedConfig):
         Raises:
             ValueError: If a feature is missing or has another shape.
         """
-        instances = (self.input_features or {}).get(OBS_INSTANCES)
-        if instances is None or tuple(instances.shape)[1:] != (COLUMNS,):
-            raise ValueError(
-                f"TTP reads sets of instances, but the feature {OBS_INSTANCES!r} of shape "
-                f"(N, {COLUMNS}) is {'missing' if instances is None else f'of shape {tuple(instances.shape)}'}; "
-                "use a data set or an environment of kitchen_prefs."
-            )
-        action = (self.output_features or {}).get(ACTION)
-        if action is None or tuple(action.shape) != (POSE_SIZE,):
-            raise ValueError(
-                f"TTP answers with a pose, but the feature {ACTION!r} of shape ({POSE_SIZE},) is "
-                f"{'missing' if action is None else f'of shape {tuple(action.shape)}'}; "
-                "use a data set or an environment of kitchen_prefs."
-            )
+        _check(OBS_INSTANCES, self.input_features, lambda shape: shape[1:] == (COLUMNS,))
+        _check(ACTION, self.output_features, lambda shape: shape == (POSE_SIZE,))
 
     @property
     def observation_delta_indices(self) -> None:
@@ -152,3 +141,15 @@ class TTPConfig(PreTrainedConfig):
     def reward_delta_indices(self) -> None:
         """TTP sees no reward."""
         return None
+
+
+def _check(
+    name: str, features: dict[str, PolicyFeature] | None, fits: Callable[[tuple], bool]
+) -> None:
+    feature = (features or {}).get(name)
+    if feature is None or not fits(tuple(feature.shape)):
+        found = "is missing" if feature is None else f"has the shape {tuple(feature.shape)}"
+        raise ValueError(
+            f"TTP reads sets of rows of {COLUMNS} numbers and answers with a pose of {POSE_SIZE}, "
+            f"but {name!r} {found}; use a data set or an environment of kitchen_prefs."
+        )

