@@ -123,7 +123,7 @@ def load_actor(
     asked_for: str = getattr(config, "track", "standard")
     environment = KitchenPrefsEnv(track=track or asked_for)
     _check_features(config, environment)
-    policy = make_policy(config, env_cfg=environment) if path else _untrained(config, environment)
+    policy = _trained(config, environment) if path else _untrained(config, environment)
     policy.eval()
     overrides = {"device_processor": {"device": config.device}} if path else {}
     pre, post = make_pre_post_processors(config, path, preprocessor_overrides=overrides)
@@ -152,6 +152,16 @@ def _make_config(policy_type: str, options: Sequence[str]) -> PreTrainedConfig:
         raise ValueError(f"There is no policy type {policy_type!r}. {suggest(policy_type, known)}")
     _check_settings(known[policy_type], options)
     return draccus.parse(known[policy_type], args=list(options))
+
+
+def _trained(config: PreTrainedConfig, environment: KitchenPrefsEnv) -> PreTrainedPolicy:
+    try:
+        return make_policy(config, env_cfg=environment)
+    except RuntimeError as error:  # torch's, for weights of other names or shapes
+        raise ValueError(
+            f"The weights in {config.pretrained_path} do not fit the config.json beside them; the "
+            "checkpoint is damaged or was made by another version of the policy."
+        ) from error
 
 
 def _untrained(config: PreTrainedConfig, environment: KitchenPrefsEnv) -> PreTrainedPolicy:

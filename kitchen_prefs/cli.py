@@ -12,6 +12,7 @@ import typer
 
 from kitchen_prefs import evaluation
 from kitchen_prefs.datasets import commands as datasets
+from kitchen_prefs.scene import commands as scene
 
 
 def main() -> None:
@@ -31,7 +32,8 @@ def command_line() -> typer.Typer:
         pretty_exceptions_enable=False,  # main says what went wrong
     )
     found = sorted(entry_points(group="kitchen_prefs.commands"), key=lambda entry: entry.name)
-    for commands in (datasets.app, evaluation.app, *(entry.load() for entry in found)):
+    own = (datasets.app, evaluation.app, scene.app)
+    for commands in (*own, *(entry.load() for entry in found)):
         app.add_typer(commands)
     return app
 

@@ -154,3 +154,11 @@ def test_select_names_the_best_checkpoint(tmp_path):
 def test_a_run_without_checkpoints_cannot_be_selected_from(tmp_path):
     with pytest.raises(ValueError, match="holds no checkpoints"):
         call("select", str(tmp_path))
+
+
+def test_weights_that_do_not_fit_their_config_are_refused(tmp_path):
+    checkpoint = save_act(tmp_path / "checkpoint")
+    config = json.loads((checkpoint / "config.json").read_text())
+    (checkpoint / "config.json").write_text(json.dumps(config | {"dim_model": 32}))
+    with pytest.raises(ValueError, match="do not fit the config"):
+        load_actor(str(checkpoint))

@@ -132,7 +132,9 @@ def test_prompt_and_situation_are_relabelled_alike(pairs, demonstrations):
 def test_geometric_scores_are_squared_distances():
     torch.manual_seed(0)
     heads, dim = 2, 8
-    attention = Attention(dim, heads, GeometricScores([(900.0, 0.0), (0.0, 50.0)])).double()
+    attention = Attention(
+        dim, heads, GeometricScores([(900.0, 0.0, 3.0), (0.0, 50.0, 0.0)])
+    ).double()
     with torch.no_grad():
         attention.query.weight.zero_()
         attention.query.bias.zero_()
@@ -140,14 +142,14 @@ def test_geometric_scores_are_squared_distances():
         Tokens(
             torch.randn(1, n, dim).double(),
             torch.ones(1, n, dtype=torch.bool),
-            0.2 * torch.rand(1, n, 6).double(),
+            torch.cat([0.2 * torch.rand(1, n, 6), torch.arange(n)[None, :, None] % 2], -1).double(),
         )
         for n in (3, 5)
     )
     difference = (tokens.geometry[:, :, None] - memory.geometry[:, None]).square()
-    scores = -torch.stack(
-        [900 * difference[..., :3].sum(-1), 50 * difference[..., 3:].sum(-1)], dim=1
-    )
+    alike = 3 * memory.geometry[:, None, :, 6] - 900 * difference[..., :3].sum(-1)
+    near = -50 * difference[..., 3:6].sum(-1)
+    scores = torch.stack([alike, near], dim=1)  # (1, h, N, M)
     values = attention.key_value(memory.features)[..., dim:].unflatten(-1, (heads, -1))
     expected = torch.einsum("bhnm,bmhd->bnhd", scores.softmax(-1), values).flatten(2)
     assert torch.allclose(attention(tokens, memory), attention.output(expected))

@@ -13,8 +13,8 @@ class Tokens(NamedTuple):
     Attributes:
         features: The tokens, (B, N, d).
         mask: Which of them are real, (B, N) bool.
-        geometry: Extents and position of the instances that they stand for, in m; zeros for ACT
-            tokens and slots, which stand for none, (B, N, 6).
+        geometry: Extents and position in m of the instances that they stand for, and whether these
+            are objects; zeros for ACT tokens and slots, which stand for none, (B, N, 7).
     """
 
     features: Tensor
@@ -68,24 +68,25 @@ class Attention(nn.Module):
 
 
 class GeometricScores(nn.Module):
-    """Attention to what is alike and to what is near.
+    """Attention to what is alike, to what is near, and to what is there already.
 
-    To the score of a pair of instances i, j each head adds, with its own learned a and b,
+    To the score of a pair of instances i, j each head adds, with its own learned a, b and c,
 
-        - a |extents_i - extents_j|^2 - b |position_i - position_j|^2.
+        - a |extents_i - extents_j|^2 - b |position_i - position_j|^2 + c is_object_j.
 
-    What depends on i alone drops out of a softmax, so this is a dot product of eight more
-    dimensions of queries and keys, e for extents and p for position:
+    What depends on i alone drops out of a softmax, so this is a dot product of nine more dimensions
+    of queries and keys, e for extents and p for position:
 
-        (2a e_i, -a, 2b p_i, -b) . (e_j, |e_j|^2, p_j, |p_j|^2)
+        (2a e_i, -a, 2b p_i, -b, c) . (e_j, |e_j|^2, p_j, |p_j|^2, is_object_j)
     """
 
-    UNIT = 1000.0  # 1 / m^2: parameters of order one learn at the pace of the others
+    # Of a and b in 1 / m^2, and of c: parameters of order one learn at the pace of the others.
+    UNITS = (1000.0, 1000.0, 10.0)
 
-    def __init__(self, start: list[tuple[float, float]]) -> None:
-        """Start from an a and a b for each head, in 1 / m^2."""
+    def __init__(self, start: list[tuple[float, float, float]]) -> None:
+        """Start from an a, a b and a c for each head."""
         super().__init__()
-        self.weights = nn.Parameter(torch.tensor(start) / torch.tensor([self.UNIT, self.UNIT, 10.0]))
+        self.weights = nn.Parameter(torch.tensor(start) / torch.tensor(self.UNITS))  # (h, 3)
 
     def forward(
         self, queries: Tensor, keys: Tensor, geometry: Tensor, memory_geometry: Tensor
@@ -95,19 +96,26 @@ class GeometricScores(nn.Module):
         Args:
             queries: (B, h, N, d/h).
             keys: (G, h, M, d/h).
-            geometry: Extents and positions of what attends, (B, N, 6).
-            memory_geometry: The same of what is attended to, (G, M, 6).
+            geometry: The geometry of what attends, (B, N, 7).
+            memory_geometry: The geometry of what is attended to, (G, M, 7).
 
         Returns:
-            The longer queries and keys, (B, h, N, d/h + 8) and (G, h, M, d/h + 8). What is added to
+            The longer queries and keys, (B, h, N, d/h + 9) and (G, h, M, d/h + 9). What is added to
             the queries makes up for the square root by which attention divides scores.
         """
-        one = torch.ones_like(geometry[..., :1])
-        a, b, c = self.weights[..., None, None].unbind(1)
-        e, p, o = geometry.split([3, 3, 1], dim=-1)
-        is_instance = ((e != 0).any(dim=-1, keepdim=True)).to(e.dtype)
-        added = torch.cat([self.UNIT * a * torch.cat([2 * e, -is_instance], -1)[:, None], self.UNIT * b * torch.cat([2 * p, -is_instance], -1)[:, None], 10*c * is_instance[:, None]], -1)
-        e, p, o = memory_geometry.split([3, 3, 1], dim=-1)
-        to_keys = torch.cat([e, e.square().sum(-1, keepdim=True), p, p.square().sum(-1, keepdim=True), o], -1)[:, None].expand(-1, keys.shape[1], -1, -1)
-        scale = (queries.shape[-1] + added.shape[-1]) ** 0.5
-        return torch.cat([queries, added * scale], dim=-1), torch.cat([keys, to_keys], dim=-1)
+        e, p, _ = geometry.split((3, 3, 1), dim=-1)
+        is_instance = (geometry != 0).any(dim=-1, keepdim=True).to(geometry.dtype)  # (B, N, 1)
+        of_i = torch.cat([2 * e, -is_instance, 2 * p, -is_instance, is_instance], dim=-1)
+        e, p, is_object = memory_geometry.split((3, 3, 1), dim=-1)
+        of_j = torch.cat([e, _square(e), p, _square(p), is_object], dim=-1)  # (G, M, 9)
+        scale = (queries.shape[-1] + of_i.shape[-1]) ** 0.5
+        repeats = torch.tensor((4, 4, 1), device=queries.device)
+        weights = scale * self.weights * self.weights.new_tensor(self.UNITS)  # (h, 3)
+        weights = weights.repeat_interleave(repeats, dim=1)  # (h, 9)
+        of_i = of_i[:, None] * weights[:, None]  # (B, h, N, 9)
+        of_j = of_j[:, None].expand(-1, self.weights.shape[0], -1, -1)  # (G, h, M, 9)
+        return torch.cat([queries, of_i], dim=-1), torch.cat([keys, of_j], dim=-1)
+
+
+def _square(vectors: Tensor) -> Tensor:
+    return vectors.square().sum(dim=-1, keepdim=True)

@@ -69,7 +69,7 @@ class TTPNetwork(nn.Module):
         return self.pointer(outputs[:, -1], inputs.features[:, :-1], outputs[:, :-1])
 
     def _embed(self, rows: Tensor, mask: Tensor) -> Tokens:
-        geometry = torch.cat([rows[..., EXTENTS], rows[..., POSITION], rows[..., IS_OBJECT, None]], dim=-1)
+        geometry = rows[..., [*range(EXTENTS.start, POSITION.stop), IS_OBJECT]]  # (B, N, 7)
         return Tokens(self.instances(rows), mask, geometry)
 
 

@@ -7,12 +7,12 @@ from torch import Tensor, nn
 from .attention import Attention, GeometricScores, Tokens
 from .configuration_ttp import TTPConfig
 
-# Where geometric attention starts. Two extents that differ by 5 cm, as those of most categories do,
-# cost a score of 4, two positions 20 cm apart 2.4. The other heads begin without.
-import os
+# Where geometric attention starts, head by head. Two extents that differ by 5 cm, as those of most
+# categories do, cost a score of 4; two positions 20 cm apart cost 2.4, or 12 where a head looks for
+# the nearest objects, the dishes that block a placement.
 ALIKE = (1500.0, 0.0, 0.0)
-NEAR = eval(os.environ.get("NEAR","(0.0, 60.0, 0.0)"))
-NEAREST = eval(os.environ.get("NEAREST","(0.0, 0.0, 0.0)"))
+NEAR = (0.0, 60.0, 0.0)
+NEAREST_OBJECTS = (0.0, 300.0, 10.0)
 PLAIN = (0.0, 0.0, 0.0)
 
 
@@ -88,15 +88,17 @@ def feedforward(config: TTPConfig) -> nn.Sequential:
 
 
 def self_attention(config: TTPConfig) -> Attention:
-    """Make the attention of a set to itself: what is alike, what is near, and the rest."""
-    start = [ALIKE, NEAR, NEAREST, *[PLAIN] * config.n_heads][: config.n_heads]
-    scores = GeometricScores(start) if config.geometric_attention else None
-    return Attention(config.dim, config.n_heads, scores)
+    """Make the attention of a set to itself."""
+    return _attention(config, [ALIKE, NEAR, NEAREST_OBJECTS])
 
 
 def cross_attention(config: TTPConfig) -> Attention:
     """Make the attention of a situation to a prompt: half of the heads look for what is alike."""
-    half = (config.n_heads + 1) // 2
-    start = [ALIKE] * half + [PLAIN] * (config.n_heads - half)
-    scores = GeometricScores(start) if config.geometric_attention else None
-    return Attention(config.dim, config.n_heads, scores)
+    return _attention(config, [ALIKE] * ((config.n_heads + 1) // 2))
+
+
+def _attention(config: TTPConfig, start: list[tuple[float, float, float]]) -> Attention:
+    if not config.geometric_attention:
+        return Attention(config.dim, config.n_heads, None)
+    start = (start + [PLAIN] * config.n_heads)[: config.n_heads]
+    return Attention(config.dim, config.n_heads, GeometricScores(start))

@@ -1,0 +1,77 @@
+"""The parts of the quickstart that need no training."""
+
+import json
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from kitchen_prefs.actors import load_actor
+from kitchen_prefs.evaluator import Summary
+from kitchen_prefs.metrics import METRICS, summarise
+from kitchen_prefs.rollouts import roll_out
+from lerobot_policy_kitchen_prefs.quickstart.pictures import draw_episode
+from lerobot_policy_kitchen_prefs.quickstart.report import write_learning_curve, write_table
+from lerobot_policy_kitchen_prefs.quickstart.training import Logged, read_log
+from lerobot_policy_kitchen_prefs.recipe_files import recipe_file
+
+LOG = """\
+INFO 2026-01-01 00:00:00 ot_train.py:600 step:50 smpl:2K ep:45 epch:0.08 loss:2.107 grdn:1.250 \
+lr:5.0e-04 updt_s:0.103 data_s:0.002 smp/s:310 accuracy:0.271
+INFO 2026-01-01 00:00:06 ot_train.py:600 step:100 smpl:3K ep:90 epch:0.16 loss:1.408 grdn:1.101 \
+lr:1.0e-03 updt_s:0.101 data_s:0.001 smp/s:314 accuracy:0.446
+"""
+
+
+@pytest.fixture(scope="module")
+def episodes():
+    actor = load_actor(policy_type="rules", options=["--rule=symbolic"])
+    return roll_out(actor, "unseen_preferences", sessions=range(4))
+
+
+def test_the_log_of_lerobot_train_is_read(tmp_path):
+    (tmp_path / "train.log").write_text(LOG)
+    assert read_log(tmp_path / "train") == [
+        Logged(2.107, 0.103, 0.002, 0.271),
+        Logged(1.408, 0.101, 0.001, 0.446),
+    ]
+
+
+def test_the_table_has_a_row_for_each_policy_and_split(tmp_path, episodes):
+    metrics = {name: summarise(episodes, metric) for name, metric in METRICS.items()}
+    summary = Summary("unseen_preferences", len(episodes), metrics, {})
+    table = write_table({"symbolic": {"unseen_preferences": summary}}, tmp_path)
+    assert f"| {metrics['PE'].mean:.2f} [" in table
+    assert "symbolic" in (tmp_path / "table.md").read_text()
+    content = json.loads((tmp_path / "table.json").read_text())
+    written = content["policies"]["symbolic"]["unseen_preferences"]["PE"]["mean"]
+    assert written == metrics["PE"].mean
+
+
+def test_the_learning_curve_shows_a_line(tmp_path):
+    logged = [Logged(2 / (i + 1), 0.1, 0.0, i / 10) for i in range(10)]
+    write_learning_curve(logged, 50, tmp_path / "curve.png")
+    pixels = np.asarray(Image.open(tmp_path / "curve.png").convert("RGB")).astype(int)
+    reddish = (pixels[..., 0] - pixels[..., 1] > 60).sum()
+    assert pixels.shape[1] > 600
+    assert reddish > 100
+
+
+@pytest.mark.slow
+def test_the_pictures_show_that_the_counter_was_cleared(tmp_path, episodes):
+    draw_episode(episodes[0], tmp_path)
+    start, end = (
+        np.asarray(Image.open(tmp_path / f"{n}.png")).astype(int) for n in ("start", "end")
+    )
+    changed = np.abs(start - end).max(axis=-1) > 40
+    counter = changed[250:560]  # where the counter's top is in the figure
+    assert start.shape == end.shape == (960, 1280, 3)
+    assert counter.mean() > 0.005
+    assert counter.sum() > 0.8 * changed.sum()  # all racks are in again, so little else changed
+    animation = Image.open(tmp_path / "episode.gif")
+    assert animation.n_frames > len(episodes[0].actions) / 2
+
+
+def test_a_recipe_that_does_not_exist_suggests_the_nearest():
+    with pytest.raises(ValueError, match="Did you mean 'ttp_quick'"):
+        recipe_file("ttp_quik")
