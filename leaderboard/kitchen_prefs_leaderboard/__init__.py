@@ -1,0 +1,1 @@
+"""The leaderboard: submissions that carry no score (a later version)."""

@@ -4,7 +4,6 @@ LeRobot imports this package because of its name; that registers the policies an
 """
 
 import kitchen_prefs.environment_config  # noqa: F401  registers --env.type=kitchen_prefs
-
 from lerobot_policy_kitchen_prefs import rules, ttp
 
 __all__ = ["rules", "ttp"]
