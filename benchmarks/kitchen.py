@@ -6,7 +6,6 @@ import gymnasium
 import numpy as np
 
 from benchmarks.measuring import Result, rates
-from kitchen_prefs import instances
 from kitchen_prefs.environment import DishwasherLoading
 from kitchen_prefs.kitchen import Kitchen
 from kitchen_prefs.observations import Observer
@@ -68,7 +67,5 @@ def _actions(environment: DishwasherLoading, session: int) -> Iterator[np.ndarra
     terminated = False
     while not terminated:
         action = environment.expert_action()
-        assert action.shape == environment.action_space.shape
-        assert len(action) == instances.POSE.stop - instances.POSE.start
         yield action
         terminated = environment.step(action)[2]

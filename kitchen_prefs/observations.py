@@ -1,7 +1,9 @@
 """What a decision sees: the visible instances as rows in random order, and a flat summary of them.
 
 The flat summary serves policies that cannot read a set, such as LeRobot's ACT. Its entries are
-listed in ENVIRONMENT_STATE and STATE; it holds nothing that the visible set does not.
+listed in ENVIRONMENT_STATE and STATE; it holds nothing that the visible set does not. Where sight
+is noisy, its positions are too; its counts are right, because the noise is too small to take one
+category for another.
 """
 
 from dataclasses import dataclass
@@ -89,10 +91,10 @@ class Observer:
 
     def observe(self) -> Observation:
         """See the kitchen before the next decision."""
-        kitchen = self._kitchen
-        dishes = kitchen.visible_dishes()
-        objects = self._object_rows(dishes)  # (3 + d, 13)
-        places, place_ids = self._place_rows()  # (p, 13)
+        dishes = self._kitchen.visible_dishes()
+        extents, position = self._perceive()
+        objects = self._object_rows(dishes, extents, position)  # (3 + d, 13)
+        places, place_ids = self._place_rows(extents)  # (p, 13)
         summary = self._summary(dishes, objects[3:])
         ids = np.concatenate([OBJECT_IDS, k.FIRST_DISH + dishes, place_ids])
         rows = np.concatenate([objects, places])  # (n, 13)
@@ -102,28 +104,35 @@ class Observer:
         self._decision += 1
         return Observation(rows[order], ids[order], summary, state.astype(np.float32))
 
-    def _object_rows(self, dishes: np.ndarray) -> np.ndarray:
+    def _perceive(self) -> tuple[np.ndarray, np.ndarray]:
+        """The extents and the position of each dish as they appear now, (n, 3) each."""
+        position = self._kitchen.pose[:, :3]
+        if self._noise is None:
+            return self._extents, position
+        errors = self._noise.standard_normal((2, *position.shape))
+        return self._extents * (1 + EXTENT_NOISE * errors[0]), position + POSITION_NOISE * errors[1]
+
+    def _object_rows(
+        self, dishes: np.ndarray, extents: np.ndarray, position: np.ndarray
+    ) -> np.ndarray:
         kitchen = self._kitchen
         rows = np.zeros((len(OBJECT_IDS) + len(dishes), instances.COLUMNS), dtype=np.float32)
         rows[0] = DOOR_ROWS[int(kitchen.door_open)]
         rows[1] = RACK_ROWS["bottom"][int(kitchen.out == "bottom")]
         rows[2] = RACK_ROWS["top"][int(kitchen.out == "top")]
-        rows[3:, instances.EXTENTS] = self._extents[dishes]
-        rows[3:, instances.POSE] = kitchen.pose[dishes]
+        rows[3:, instances.EXTENTS] = extents[dishes]
+        rows[3:, instances.POSITION] = position[dishes]
+        rows[3:, instances.QUATERNION] = kitchen.pose[dishes, 3:]
         rows[3:, instances.IS_OBJECT] = 1
-        if self._noise is not None:
-            d = len(dishes)
-            rows[3:, instances.EXTENTS] *= 1 + EXTENT_NOISE * self._noise.standard_normal((d, 3))
-            rows[3:, instances.POSITION] += POSITION_NOISE * self._noise.standard_normal((d, 3))
         return rows
 
-    def _place_rows(self) -> tuple[np.ndarray, np.ndarray]:
+    def _place_rows(self, extents: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         kitchen = self._kitchen
         if kitchen.held is None:
             return np.empty((0, instances.COLUMNS), dtype=np.float32), np.empty(0, dtype=int)
         placements = kitchen.placements()
         rows = np.zeros((len(placements) + 1, instances.COLUMNS), dtype=np.float32)
-        rows[:, instances.EXTENTS] = self._extents[kitchen.held]
+        rows[:, instances.EXTENTS] = extents[kitchen.held]
         rows[:, instances.IS_PLACE] = 1
         rows[-1, instances.POSE] = k.SINK_POSE
         if kitchen.out is None:

@@ -10,6 +10,7 @@ from kitchen_prefs.actors import load_actor
 from kitchen_prefs.evaluator import Summary
 from kitchen_prefs.metrics import METRICS, summarise
 from kitchen_prefs.rollouts import roll_out
+from lerobot_policy_kitchen_prefs.quickstart import training
 from lerobot_policy_kitchen_prefs.quickstart.pictures import draw_episode
 from lerobot_policy_kitchen_prefs.quickstart.report import write_learning_curve, write_table
 from lerobot_policy_kitchen_prefs.quickstart.training import Logged, read_log
@@ -32,9 +33,26 @@ def episodes():
 def test_the_log_of_lerobot_train_is_read(tmp_path):
     (tmp_path / "train.log").write_text(LOG)
     assert read_log(tmp_path / "train") == [
-        Logged(2.107, 0.103, 0.002, 0.271),
-        Logged(1.408, 0.101, 0.001, 0.446),
+        Logged(2.107, 0.271),
+        Logged(1.408, 0.446),
     ]
+
+
+def test_a_training_that_was_stopped_begins_anew(tmp_path, monkeypatch):
+    (tmp_path / "run").mkdir()
+    (tmp_path / "run" / "left").touch()
+    calls = []
+    monkeypatch.setattr(training, "_run", lambda command, log: calls.append(command) or 0)
+    training.train("ttp_quick", tmp_path / "run")
+    assert not (tmp_path / "run" / "left").exists()
+    assert len(calls) == 1
+
+
+def test_a_failed_training_names_its_log(tmp_path, monkeypatch):
+    monkeypatch.setattr(training, "recipe_file", lambda recipe: tmp_path / "missing.yaml")
+    with pytest.raises(OSError, match=r"run\.log says why"):
+        training.train("ttp_quick", tmp_path / "run")
+    assert "missing.yaml" in (tmp_path / "run.log").read_text()
 
 
 def test_the_table_has_a_row_for_each_policy_and_split(tmp_path, episodes):
@@ -49,7 +67,7 @@ def test_the_table_has_a_row_for_each_policy_and_split(tmp_path, episodes):
 
 
 def test_the_learning_curve_shows_a_line(tmp_path):
-    logged = [Logged(2 / (i + 1), 0.1, 0.0, i / 10) for i in range(10)]
+    logged = [Logged(2 / (i + 1), i / 10) for i in range(10)]
     write_learning_curve(logged, 50, tmp_path / "curve.png")
     pixels = np.asarray(Image.open(tmp_path / "curve.png").convert("RGB")).astype(int)
     reddish = (pixels[..., 0] - pixels[..., 1] > 60).sum()

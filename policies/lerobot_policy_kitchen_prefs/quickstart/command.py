@@ -1,15 +1,19 @@
 """The command `kitchen-prefs quickstart`."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
+
+if TYPE_CHECKING:
+    from kitchen_prefs.evaluator import Summary
+    from kitchen_prefs.metrics import Episode
 
 app = typer.Typer()
 
 RECIPE = "ttp_quick"
 TRAINING_DATA = "dishwasher-train-v1"
-SPLITS = ("seen", "unseen_preferences")
+EVALUATED = ("seen", "unseen_preferences")
 RULES = ("random", "majority", "expert")
 SHOWN = ("unseen_preferences", 0)  # the episode of the pictures
 
@@ -22,7 +26,7 @@ def quickstart(
 ) -> None:
     """Make the data, train TTP for some minutes, score it beside simple rules, and draw pictures.
 
-    A command that was stopped goes on where it was when it is called again.
+    What is finished is kept: a command that was stopped goes on with the next part.
 
     For example:
     kitchen-prefs quickstart
@@ -42,17 +46,26 @@ def quickstart(
     summaries, shown = _evaluate(checkpoint, out)
 
     typer.echo("4/4  Table and pictures")
-    from lerobot_policy_kitchen_prefs.quickstart.pictures import draw_episode
     from lerobot_policy_kitchen_prefs.quickstart.report import write_learning_curve, write_table
 
-    table = write_table(summaries, out)
+    typer.echo(f"\n{write_table(summaries, out)}")
     write_learning_curve(read_log(run), _log_freq(checkpoint), out / "learning_curve.png")
-    draw_episode(shown, out)
-    typer.echo(f"\n{table}\nThe table, the learning curve and the pictures are in {out}.")
+    _draw(shown, out)
+    typer.echo(f"The table, the learning curve and the pictures are in {out}.")
     typer.echo(_next_steps(checkpoint))
 
 
-def _evaluate(checkpoint: Path, out: Path):
+def _draw(episode: "Episode", out: Path) -> None:
+    """Pictures need OpenGL; everything else does not."""
+    try:
+        from lerobot_policy_kitchen_prefs.quickstart.pictures import draw_episode
+
+        draw_episode(episode, out)
+    except OSError as error:
+        typer.echo(f"There are no pictures of an episode. {error}")
+
+
+def _evaluate(checkpoint: Path, out: Path) -> tuple[dict[str, dict[str, "Summary"]], "Episode"]:
     """Every policy on every split; and the episode of the pictures."""
     from kitchen_prefs.actors import load_actor
     from kitchen_prefs.evaluator import Evaluator
@@ -64,7 +77,7 @@ def _evaluate(checkpoint: Path, out: Path):
         name: Evaluator(actor, out / "evaluation" / name) for name, actor in actors.items()
     }
     summaries = {
-        name: {split: evaluator.evaluate(split) for split in SPLITS}
+        name: {split: evaluator.evaluate(split) for split in EVALUATED}
         for name, evaluator in evaluators.items()
     }
     split, session = SHOWN

@@ -1,5 +1,6 @@
 """Pictures of an episode, drawn by replaying its actions in the kitchen."""
 
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -39,7 +40,7 @@ def draw_episode(episode: Episode, folder: Path) -> None:
     )
 
 
-def _frames(environment: DishwasherLoading, episode: Episode):
+def _frames(environment: DishwasherLoading, episode: Episode) -> Iterator[Image.Image]:
     renderer = Renderer(*FRAME_SIZE, "fast")
     yield Image.fromarray(renderer.render(environment.scene()))
     for action in tqdm(episode.actions, desc="episode.gif", unit="frame"):

@@ -1,6 +1,8 @@
 """Runs `lerobot-train` on a recipe and reads its log."""
 
+import json
 import re
+import shutil
 import subprocess
 import sys
 from dataclasses import dataclass
@@ -11,29 +13,26 @@ from tqdm import tqdm
 from lerobot_policy_kitchen_prefs.recipe_files import recipe_file
 
 PROGRESS = re.compile(r"Training: .*?(\d+)/(\d+) ")
-LOGGED = re.compile(r"step:\S+ .*?loss:([\d.]+).*?updt_s:([\d.]+) data_s:([\d.]+)")
-ACCURACY = re.compile(r"accuracy:([\d.]+)")
+LOGGED = re.compile(r"step:\S+ .*?loss:(\S+) .*?accuracy:(\S+)")
 
 
 @dataclass(frozen=True)
 class Logged:
-    """What lerobot-train logged of some steps.
+    """What lerobot-train logged: means over the last `log_freq` steps.
 
     Attributes:
-        loss: Mean loss.
-        update_s: Seconds of a step's update.
-        data_s: Seconds of a step's data.
+        loss: Cross-entropy of the expert's choices (nats).
         accuracy: Share of decisions in which the policy's first choice is the expert's.
     """
 
     loss: float
-    update_s: float
-    data_s: float
     accuracy: float
 
 
 def train(recipe: str, run: Path) -> Path:
-    """Train a recipe through `lerobot-train`, or go on where an earlier run was stopped.
+    """Train a recipe through `lerobot-train`, unless that is done already.
+
+    A training that was stopped begins anew.
 
     Args:
         recipe: The recipe's name.
@@ -46,30 +45,29 @@ def train(recipe: str, run: Path) -> Path:
         OSError: If lerobot-train fails; the message names the log.
     """
     checkpoint = run / "checkpoints" / "last" / "pretrained_model"
-    config = checkpoint / "train_config.json"
-    command = [sys.executable, "-m", "lerobot.scripts.lerobot_train"]
-    if config.exists():
-        command += [f"--config_path={config}", "--resume=true"]
-    else:
-        command += [f"--config_path={recipe_file(recipe)}", f"--output_dir={run}"]
-    log = run.with_suffix(".log")
-    log.parent.mkdir(parents=True, exist_ok=True)
-    if _run(command, log) != 0:
-        raise OSError(f"lerobot-train failed; the end of {log} says why.")
+    if not _is_finished(checkpoint):
+        shutil.rmtree(run, ignore_errors=True)
+        run.parent.mkdir(parents=True, exist_ok=True)
+        log = run.with_suffix(".log")
+        arguments = [f"--config_path={recipe_file(recipe)}", f"--output_dir={run}"]
+        if _run([sys.executable, "-m", "lerobot.scripts.lerobot_train", *arguments], log) != 0:
+            raise OSError(f"lerobot-train failed; the end of {log} says why.")
     return checkpoint
 
 
 def read_log(run: Path) -> list[Logged]:
     """What lerobot-train logged, one entry each `log_freq` steps."""
-    found = []
-    for line in run.with_suffix(".log").read_text().splitlines():
-        if values := LOGGED.search(line):
-            accuracy = ACCURACY.search(line)
-            loss, update_s, data_s = (float(value) for value in values.groups())
-            found.append(
-                Logged(loss, update_s, data_s, float(accuracy.group(1)) if accuracy else 0.0)
-            )
-    return found
+    found = LOGGED.findall(run.with_suffix(".log").read_text())
+    return [Logged(float(loss), float(accuracy)) for loss, accuracy in found]
+
+
+def _is_finished(checkpoint: Path) -> bool:
+    """Whether a run's last checkpoint was saved at its last step."""
+    state = checkpoint.parent / "training_state" / "training_step.json"
+    if not state.exists():
+        return False
+    config = json.loads((checkpoint / "train_config.json").read_text())
+    return json.loads(state.read_text())["step"] == config["steps"]
 
 
 def _run(command: list[str], log: Path) -> int:
@@ -78,7 +76,7 @@ def _run(command: list[str], log: Path) -> int:
         command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace"
     )
     assert process.stdout is not None
-    with log.open("a") as file, tqdm(desc="lerobot-train", unit="step") as bar:
+    with log.open("w") as file, tqdm(desc="lerobot-train", unit="step") as bar:
         for line in process.stdout:  # a carriage return ends a line too
             if progress := PROGRESS.search(line):
                 bar.total = int(progress.group(2))

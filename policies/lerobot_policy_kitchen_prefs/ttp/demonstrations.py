@@ -79,7 +79,7 @@ class Demonstrations:
             The episode's index.
         """
         episodes = np.flatnonzero(self.preference == preference)
-        others = np.setdiff1d(episodes, excluded, assume_unique=True)
+        others = np.setdiff1d(episodes, excluded)
         return int(generator.choice(others if len(others) else episodes))
 
     def prompts(self, episodes: list[int]) -> np.ndarray:
