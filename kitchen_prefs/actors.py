@@ -3,7 +3,7 @@
 import hashlib
 import json
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -11,19 +11,20 @@ import draccus
 import numpy as np
 import torch
 from draccus.utils import ParsingError
-from huggingface_hub.errors import HFValidationError
 from lerobot.configs import PreTrainedConfig
 from lerobot.envs import env_to_policy_features, preprocess_observation
-from lerobot.policies import (
-    PreTrainedPolicy,
-    get_policy_class,
-    make_policy,
-    make_pre_post_processors,
-)
+from lerobot.policies import PreTrainedPolicy, get_policy_class, make_pre_post_processors
 from lerobot.processor import PolicyProcessorPipeline
 from lerobot.utils.constants import ACTION
 from lerobot.utils.import_utils import register_third_party_plugins
 
+from kitchen_prefs.checkpoints import (
+    check_settings,
+    find_checkpoint,
+    read_config,
+    read_policy,
+    read_processors,
+)
 from kitchen_prefs.environment_config import KitchenPrefsEnv
 from kitchen_prefs.splits import suggest
 
@@ -111,73 +112,49 @@ def load_actor(
 
     Raises:
         ValueError: If not just one of `path` and `policy_type` is given, or if the policy is
-            unknown, has no such setting, or does not fit the environment.
+            unknown, damaged or not trained, has no such setting, or does not fit the environment.
     """
     register_third_party_plugins()
     if (path is None) == (policy_type is None):
         raise ValueError("Give either --policy.path=CHECKPOINT or --policy.type=TYPE.")
     try:
-        config = _read_config(path, options) if path else _make_config(str(policy_type), options)
+        if path:
+            return _trained(find_checkpoint(path), options, track)
+        return _untrained(str(policy_type), options, track)
     except ParsingError as error:
         raise ValueError(f"The policy's settings are wrong: {error.__cause__ or error}") from error
-    asked_for: str = getattr(config, "track", "standard")
-    environment = KitchenPrefsEnv(track=track or asked_for)
+
+
+def _trained(folder: Path, options: Sequence[str], track: str | None) -> Actor:
+    config = read_config(folder, options)
+    environment = _environment(config, track)
     _check_features(config, environment)
-    policy = _trained(config, environment) if path else _untrained(config, environment)
-    policy.eval()
-    overrides = {"device_processor": {"device": config.device}} if path else {}
-    pre, post = make_pre_post_processors(config, path, preprocessor_overrides=overrides)
-    return Actor(policy, pre, post, environment.track)
+    preprocessor, postprocessor = read_processors(folder, config)
+    return Actor(read_policy(folder, config), preprocessor, postprocessor, environment.track)
 
 
-def _read_config(path: str, options: Sequence[str]) -> PreTrainedConfig:
-    nowhere = (
-        f"There is no policy in {path}; give a folder such as RUN/checkpoints/last/pretrained_model"
-    )
-    if Path(path).is_dir() and not (Path(path) / "config.json").exists():
-        raise ValueError(f"{nowhere}.")
-    try:
-        config = PreTrainedConfig.from_pretrained(path)
-        _check_settings(type(config), options)
-        config = PreTrainedConfig.from_pretrained(path, cli_overrides=list(options))
-    except (OSError, HFValidationError) as error:
-        raise ValueError(f"{nowhere}, or a policy's name on the hub.") from error
-    config.pretrained_path = Path(path)
-    return config
-
-
-def _make_config(policy_type: str, options: Sequence[str]) -> PreTrainedConfig:
+def _untrained(policy_type: str, options: Sequence[str], track: str | None) -> Actor:
+    """Make a policy without weights; LeRobot's factory would warn that it lacks statistics."""
     known = PreTrainedConfig.get_known_choices()
     if policy_type not in known:
         raise ValueError(f"There is no policy type {policy_type!r}. {suggest(policy_type, known)}")
-    _check_settings(known[policy_type], options)
-    return draccus.parse(known[policy_type], args=list(options))
-
-
-def _trained(config: PreTrainedConfig, environment: KitchenPrefsEnv) -> PreTrainedPolicy:
-    try:
-        return make_policy(config, env_cfg=environment)
-    except RuntimeError as error:  # torch's, for weights of other names or shapes
-        raise ValueError(
-            f"The weights in {config.pretrained_path} do not fit the config.json beside them; the "
-            "checkpoint is damaged or was made by another version of the policy."
-        ) from error
-
-
-def _untrained(config: PreTrainedConfig, environment: KitchenPrefsEnv) -> PreTrainedPolicy:
-    """Make a policy without weights; LeRobot's factory would warn that it lacks statistics."""
+    check_settings(known[policy_type], options)
+    config = draccus.parse(known[policy_type], args=list(options))
+    environment = _environment(config, track)
     features = env_to_policy_features(environment)
     config.output_features = {ACTION: features.pop(ACTION)}
     config.input_features = features
-    return get_policy_class(config.type)(config)
+    policy = get_policy_class(policy_type)(config)
+    if next(policy.parameters(), None) is not None:
+        raise ValueError(f"{policy_type!r} has to be trained first: give --policy.path=CHECKPOINT.")
+    policy.eval()
+    preprocessor, postprocessor = make_pre_post_processors(config)
+    return Actor(policy, preprocessor, postprocessor, environment.track)
 
 
-def _check_settings(config_class: type[PreTrainedConfig], options: Sequence[str]) -> None:
-    known = {field.name for field in fields(config_class)}
-    for option in options:
-        name = option.removeprefix("--").partition("=")[0]
-        if name.partition(".")[0] not in known:
-            raise ValueError(f"The policy has no setting {name!r}. {suggest(name, known)}")
+def _environment(config: PreTrainedConfig, track: str | None) -> KitchenPrefsEnv:
+    asked_for: str = getattr(config, "track", "standard")
+    return KitchenPrefsEnv(track=track or asked_for)
 
 
 def _check_features(config: PreTrainedConfig, environment: KitchenPrefsEnv) -> None:

@@ -5,6 +5,7 @@ a typer app. The commands of an app that has a name stand under that name, those
 stand at the top.
 """
 
+import os
 import sys
 from importlib.metadata import entry_points
 
@@ -16,10 +17,15 @@ from kitchen_prefs.scene import commands as scene
 
 
 def main() -> None:
-    """Run a command; what the user can put right is said in one sentence, with exit code 1."""
+    """Run a command; what the user can put right is said in one sentence, with exit code 1.
+
+    A fault of the program may be a ValueError, too; KITCHEN_PREFS_DEBUG=1 shows where it arose.
+    """
     try:
         command_line()()
     except (ValueError, OSError) as error:
+        if os.environ.get("KITCHEN_PREFS_DEBUG") == "1":
+            raise
         sys.exit(f"kitchen-prefs: {error}")
 
 
@@ -27,6 +33,7 @@ def command_line() -> typer.Typer:
     """The command with the subcommands of all installed packages."""
     app = typer.Typer(
         help="Can a policy learn how THIS person loads a dishwasher, from one demonstration?",
+        epilog="With KITCHEN_PREFS_DEBUG=1 in the environment, errors come with their traceback.",
         no_args_is_help=True,
         add_completion=False,
         pretty_exceptions_enable=False,  # main says what went wrong

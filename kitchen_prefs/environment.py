@@ -37,6 +37,9 @@ LIMIT_FACTOR = 2  # an episode ends at twice the expert's number of decisions
 MAX_EPISODE_STEPS = 160
 METRES_PER_RADIAN = 0.1  # what a turn counts in the distance between two poses
 FRESH_SALTS = 2**31  # an unseeded reset draws its salt below this, never the published salt 0
+RESET_OPTIONS = ("session", "salt")
+# LeRobot's mark of a new rollout (lerobot.envs.utils.NEW_ROLLOUT_OPTION); it changes nothing here.
+LEROBOT_OPTION = "lerobot_new_rollout"
 
 
 class DishwasherLoading(gymnasium.Env):
@@ -97,13 +100,18 @@ class DishwasherLoading(gymnasium.Env):
         """Start a session.
 
         Args:
-            seed: Starts session `seed` modulo the split's size. Without a seed and an option, a
-                fresh session, which no published split has, is drawn from this environment's own
-                generator.
-            options: `{"session": i, "salt": k}` starts session i of salt k (0 if not given).
+            seed: Starts session `seed` modulo the split's size. Without a seed and a session, one
+                is drawn from this environment's own generator; unless a salt is given, so is the
+                salt, and the session is a fresh one, which no published split has.
+            options: `{"session": i, "salt": k}` starts session i of salt k. The salt is 0 if only a
+                session or a seed is given.
 
         Returns:
             The observation and the info.
+
+        Raises:
+            ValueError: If an option is unknown or is not a whole number, or if there is no such
+                session.
         """
         super().reset(seed=seed)
         self._start(*self._which_session(seed, options or {}))
@@ -218,13 +226,14 @@ class DishwasherLoading(gymnasium.Env):
     # Inside -----------------------------------------------------------------------------------
 
     def _which_session(self, seed: int | None, options: dict[str, Any]) -> tuple[int, int]:
-        salt = int(options.get("salt", 0))
+        """The index and the salt of the session to start."""
+        _check_options(options)
         if "session" in options:
-            return int(options["session"]), salt
+            return int(options["session"]), int(options.get("salt", 0))
         if seed is not None:
-            return seed % self.split.sessions, salt
-        fresh = int(self.np_random.integers(1, FRESH_SALTS))
-        return int(self.np_random.integers(self.split.sessions)), fresh
+            return seed % self.split.sessions, int(options.get("salt", 0))
+        salt = options["salt"] if "salt" in options else self.np_random.integers(1, FRESH_SALTS)
+        return int(self.np_random.integers(self.split.sessions)), int(salt)
 
     def _start(self, index: int, salt: int) -> None:
         self._session = make_session(self.split.name, index, salt)
@@ -270,9 +279,8 @@ class DishwasherLoading(gymnasium.Env):
         self._closed_early += early
 
     def _info(self, refusal: str, distance: float) -> dict[str, Any]:
-        finished = self._kitchen.finished
         return {
-            "is_success": finished and success(self.episode()),
+            "is_success": success(self.episode()),
             "refusal": refusal,
             "distance": distance,
             "session": self._session.index,
@@ -308,6 +316,18 @@ def nearest_row(rows: np.ndarray, action: np.ndarray) -> tuple[int, float]:
     distance = metres + METRES_PER_RADIAN * 2 * np.arccos(np.clip(cosine, 0, 1))  # (c,)
     nearest = int(distance.argmin())
     return int(candidates[nearest]), float(distance[nearest])
+
+
+def _check_options(options: dict[str, Any]) -> None:
+    for name, value in options.items():
+        if name == LEROBOT_OPTION:
+            continue
+        if name not in RESET_OPTIONS:
+            raise ValueError(
+                f"reset() knows no option {name!r}. {suggest(str(name), RESET_OPTIONS)}"
+            )
+        if not isinstance(value, int | np.integer):
+            raise ValueError(f"The option {name!r} is a whole number, not {value!r}.")
 
 
 def _box(*shape: int) -> gymnasium.spaces.Box:

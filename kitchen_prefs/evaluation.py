@@ -12,7 +12,8 @@ import typer
 from rich.console import Console
 from rich.table import Table
 
-from kitchen_prefs.metrics import METRICS
+from kitchen_prefs.files import make_folder
+from kitchen_prefs.metrics import METRICS, Interval
 from kitchen_prefs.splits import get_split
 
 if TYPE_CHECKING:
@@ -69,6 +70,7 @@ def evaluate(
     """
     names = _names(split)
     settings = _settings(context.args)
+    make_folder(out, "--out")
     from kitchen_prefs.actors import load_actor
     from kitchen_prefs.evaluator import Evaluator
 
@@ -82,7 +84,7 @@ def evaluate(
         _print_summary(summary)
         summaries.append(summary)
     if len(summaries) > 1:
-        _print_overview(summaries)
+        _print_overview(summaries, evaluator.mean_of_splits(names))
     console.print(f"Episodes and summaries are in {out}.")
 
 
@@ -104,14 +106,14 @@ def select(
     selection = select_checkpoint(run, track=track, batch_size=batch_size)
     table = Table("Step", *METRICS, title="val")
     for step, metrics in selection.metrics.items():
-        table.add_row(step, *(f"{metrics[name].mean:.3f}" for name in METRICS))
+        _add_intervals(table, step, metrics)
     console.print(table)
     console.print(f"The best by Score is {selection.best}.")
 
 
 def _names(splits: Sequence[str]) -> list[str]:
     names = [name.strip() for text in splits for name in text.split(",")]
-    return [get_split(name).name for name in names]
+    return list(dict.fromkeys(get_split(name).name for name in names))
 
 
 def _settings(arguments: Sequence[str]) -> list[str]:
@@ -125,7 +127,8 @@ def _settings(arguments: Sequence[str]) -> list[str]:
 
 
 def _print_summary(summary: "Summary") -> None:
-    metrics = Table("Metric", "Mean", "95 % interval", title=f"{summary.split}, {summary.episodes}")
+    title = f"{summary.split}, {summary.episodes} episodes"
+    metrics = Table("Metric", "Mean", "95 % interval", title=title)
     for name, interval in summary.metrics.items():
         metrics.add_row(name, f"{interval.mean:.3f}", f"{interval.low:.3f} to {interval.high:.3f}")
     console.print(metrics)
@@ -137,11 +140,18 @@ def _print_summary(summary: "Summary") -> None:
         console.print(reasons)
 
 
-def _print_overview(summaries: Sequence["Summary"]) -> None:
+def _print_overview(summaries: Sequence["Summary"], mean: dict[str, Interval]) -> None:
     table = Table("Split", *METRICS, title="Means")
     for summary in summaries:
-        table.add_row(summary.split, *(f"{summary.metrics[name].mean:.3f}" for name in METRICS))
-    means = [sum(s.metrics[name].mean for s in summaries) / len(summaries) for name in METRICS]
-    table.add_section()
-    table.add_row("mean of the splits", *(f"{mean:.3f}" for mean in means))
+        _add_intervals(table, summary.split, summary.metrics)
+    _add_intervals(table, "mean of the splits", mean)
     console.print(table)
+
+
+def _add_intervals(table: Table, name: str, metrics: dict[str, Interval]) -> None:
+    """Three rows, as all intervals side by side would be wider than a terminal."""
+    intervals = [metrics[metric] for metric in METRICS]
+    table.add_row(name, *(f"{interval.mean:.3f}" for interval in intervals))
+    table.add_row("  95 % from", *(f"{interval.low:.3f}" for interval in intervals))
+    table.add_row("         to", *(f"{interval.high:.3f}" for interval in intervals))
+    table.add_section()

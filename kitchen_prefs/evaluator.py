@@ -7,16 +7,18 @@ from importlib.metadata import version
 from pathlib import Path
 
 from kitchen_prefs.actors import Actor
+from kitchen_prefs.files import write_json
 from kitchen_prefs.metrics import (
     METRICS,
     Episode,
     Interval,
     category_accuracy,
+    mean_of_splits,
     prompt_use,
     shortcomings,
     summarise,
 )
-from kitchen_prefs.records import Conditions, EpisodeFile, write_json
+from kitchen_prefs.records import Conditions, EpisodeFile
 from kitchen_prefs.rollouts import BATCH_SIZE, roll_out
 from kitchen_prefs.splits import DATA_VERSION
 
@@ -83,6 +85,11 @@ class Evaluator:
             self.folder / f"{split}.json", {**asdict(summary), "conditions": asdict(conditions)}
         )
         return summary
+
+    def mean_of_splits(self, splits: Sequence[str]) -> dict[str, Interval]:
+        """Each metric's mean over splits, each of which counts the same."""
+        episodes = [self.episodes(split) for split in splits]
+        return {name: mean_of_splits(episodes, metric) for name, metric in METRICS.items()}
 
     def episodes(
         self, split: str, *, prompt_of: str = "same", expert_states: bool = False

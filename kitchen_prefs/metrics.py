@@ -120,8 +120,12 @@ def score(episode: Episode) -> float:
 
 
 def success(episode: Episode) -> bool:
-    """Whether PE is 1 and everything is closed (LeRobot's `is_success`)."""
-    return packing_efficiency(episode) == 1.0 and episode.closed
+    """Whether PE is 1, nothing is left on the counter and everything is closed.
+
+    LeRobot's `is_success`. Without `finished` an episode that shuts the door on what the expert
+    drops in the sink would count.
+    """
+    return packing_efficiency(episode) == 1.0 and episode.closed and episode.finished
 
 
 def category_accuracy(episode: Episode) -> float:
@@ -204,15 +208,53 @@ def prompt_use(episodes: Sequence[Episode], swapped: Sequence[Episode]) -> Inter
     return _bootstrap(episodes, gains)
 
 
+def mean_of_splits(splits: Sequence[Sequence[Episode]], metric: Metric) -> Interval:
+    """The mean of a metric over several splits, each of which counts the same.
+
+    Args:
+        splits: The episodes of each split.
+        metric: What is averaged, first over the episodes of a split, then over the splits.
+
+    Raises:
+        ValueError: If there are no splits, or if one has no episodes.
+    """
+    if not splits:
+        raise ValueError("There are no splits to average over.")
+    generator = np.random.default_rng(0)  # one for all: splits are resampled independently
+    values = [[metric(episode) for episode in episodes] for episodes in splits]
+    means = [
+        _resample(episodes, of_split, generator)
+        for episodes, of_split in zip(splits, values, strict=True)
+    ]
+    return _interval(float(np.mean([np.mean(of_split) for of_split in values])), np.mean(means, 0))
+
+
 RESAMPLES = 10_000  # the interval's ends then move by less than .002 from seed to seed
 
 
 def _bootstrap(episodes: Sequence[Episode], values: Iterable[float]) -> Interval:
+    """The mean of the episodes' values and its interval."""
+    values = list(values)
+    means = _resample(episodes, values, np.random.default_rng(0))
+    return _interval(float(np.mean(values)), means)
+
+
+def _interval(mean: float, resampled: np.ndarray) -> Interval:
+    low, high = np.quantile(resampled, (0.025, 0.975))
+    return Interval(mean, float(low), float(high))
+
+
+def _resample(
+    episodes: Sequence[Episode], values: Iterable[float], generator: np.random.Generator
+) -> np.ndarray:
     """Resample sessions within preferences; where preferences are a sample, resample those.
 
     The twelve preferences are fixed, so an interval says what other sessions of them would give.
     Those of many_preferences stand for all that there are. A preference with a single session
     cannot be resampled within, so then the preferences are resampled, too.
+
+    Returns:
+        The means of the resampled values, (RESAMPLES,).
     """
     if not episodes:
         raise ValueError("There are no episodes to summarise.")
@@ -221,13 +263,9 @@ def _bootstrap(episodes: Sequence[Episode], values: Iterable[float]) -> Interval
         of_preference.setdefault(episode.preference, []).append(value)
     groups = [np.array(group, dtype=float) for group in of_preference.values()]
 
-    generator = np.random.default_rng(0)
     if episodes[0].split == "many_preferences" or min(map(len, groups)) == 1:
-        means = _resample_groups(groups, generator)
-    else:
-        means = _resample_within(groups, generator)
-    low, high = np.quantile(means, (0.025, 0.975))
-    return Interval(float(np.concatenate(groups).mean()), float(low), float(high))
+        return _resample_groups(groups, generator)
+    return _resample_within(groups, generator)
 
 
 def _resample_within(groups: list[np.ndarray], generator: np.random.Generator) -> np.ndarray:

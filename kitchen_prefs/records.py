@@ -10,7 +10,8 @@ from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 from typing import Any
 
-from kitchen_prefs.metrics import METRICS, Episode, shortcomings
+from kitchen_prefs.files import write_json
+from kitchen_prefs.metrics import METRICS, Episode, category_accuracy, shortcomings
 
 
 @dataclass(frozen=True)
@@ -20,7 +21,7 @@ class Conditions:
     Attributes:
         policy: The policy's type.
         fingerprint: A hash of its weights and of the settings that change what it does.
-        track: What the policy is told: "standard", "privileged", "language" or "open".
+        track: What the policy is told: "standard", "privileged" or "language".
         prompt_of: Whose demonstration the prompt is: of the "same" or of an "other" preference.
         expert_states: Whether the decisions were taken in the expert's states.
         salt: Which drawing of the split's sessions; 0 is the published one.
@@ -49,24 +50,35 @@ class EpisodeFile:
         episodes: The episodes so far, in the order in which they ended.
 
     Raises:
-        ValueError: If the file holds episodes under other conditions or cannot be read.
+        ValueError: If the file holds episodes under other or unknown conditions, or cannot be read.
     """
 
     def __init__(self, path: Path, conditions: Conditions) -> None:
         self.path = path
+        self.conditions = conditions
         path.parent.mkdir(parents=True, exist_ok=True)
         _check_conditions(path, conditions)
         _drop_torn_line(path)
         self.episodes = read_episodes(path)
 
     def append(self, episode: Episode) -> None:
-        """Write an episode, with its metrics and why it fell short."""
-        line = asdict(episode)
-        line["metrics"] = {name: metric(episode) for name, metric in METRICS.items()}
-        line["shortcomings"] = shortcomings(episode)
+        """Write an episode, with what it says of the policy."""
         with self.path.open("a") as file:
-            file.write(json.dumps(line) + "\n")
+            file.write(json.dumps(asdict(episode) | self._judge(episode)) + "\n")
         self.episodes.append(episode)
+
+    def _judge(self, episode: Episode) -> dict[str, dict[str, Any]]:
+        """The metrics, and why the episode fell short.
+
+        What is loaded in the expert's states is the expert's merit; the policy's is the accuracy of
+        its choices alone.
+        """
+        if self.conditions.expert_states:
+            return {"metrics": {"Category accuracy": category_accuracy(episode)}}
+        return {
+            "metrics": {name: metric(episode) for name, metric in METRICS.items()},
+            "shortcomings": shortcomings(episode),
+        }
 
 
 def read_episodes(path: Path) -> list[Episode]:
@@ -79,25 +91,31 @@ def read_episodes(path: Path) -> list[Episode]:
     return [_parse(line, f"Line {n} of {path}") for n, line in enumerate(lines, start=1)]
 
 
-def write_json(path: Path, content: dict) -> None:
-    """Write a JSON file so that it is either whole or not there."""
-    temporary = path.with_suffix(".tmp")
-    temporary.write_text(json.dumps(content, indent=2) + "\n")
-    temporary.replace(path)
-
-
 def _check_conditions(path: Path, conditions: Conditions) -> None:
     header = path.with_suffix(".header.json")
+    way_out = "give another --out, or delete that folder."
     if not header.exists():
+        if path.exists() and path.stat().st_size:
+            raise ValueError(
+                f"{path} holds episodes of an unknown policy, as {header.name} is not "
+                f"there; {way_out}"
+            )
         write_json(header, asdict(conditions))
         return
-    there = json.loads(header.read_text())
+    there = _read_header(header, way_out)
     differing = [name for name, value in asdict(conditions).items() if there.get(name) != value]
     if differing:
-        raise ValueError(
-            f"{path} holds episodes with another {' and '.join(differing)}; give another --out, "
-            "or delete that folder."
-        )
+        raise ValueError(f"{path} holds episodes with another {' and '.join(differing)}; {way_out}")
+
+
+def _read_header(header: Path, way_out: str) -> dict:
+    try:
+        content = json.loads(header.read_text())
+    except ValueError:
+        content = None
+    if not isinstance(content, dict):
+        raise ValueError(f"{header} is damaged; {way_out}")
+    return content
 
 
 def _drop_torn_line(path: Path) -> None:

@@ -52,7 +52,9 @@ def roll_out(
         expert_states: Carry out the expert's decisions and note what the policy would have chosen,
             see `metrics.category_accuracy`.
         batch_size: How many sessions are played at once. What a deterministic policy does in a
-            session does not depend on it.
+            session does not depend on it. A policy that samples draws for the whole batch at once:
+            its episodes are the same only when all sessions are played again with the same batch
+            size, and without a kill in between.
         file: Where each episode is written as it ends; the sessions in it are not played again.
 
     Returns:
@@ -69,11 +71,13 @@ def roll_out(
     ]
     name, done = file.path.stem if file else split, len(wanted) - len(missing)
     with (
-        tqdm(total=len(wanted), initial=done, desc=name, unit="episode") as bar,
+        tqdm(
+            total=len(wanted), initial=done, desc=name, unit="episode", disable=not missing
+        ) as bar,
         torch.random.fork_rng(),
     ):
         for batch in batched(missing, batch_size):
-            torch.manual_seed(batch[0])  # a policy that samples does the same when run again
+            torch.manual_seed(batch[0])  # so that a policy that samples can be repeated, see above
             for episode in _play(decider, environments[: len(batch)], batch, salt, expert_states):
                 episodes[episode.session] = episode
                 if file:

@@ -5,8 +5,8 @@ from pathlib import Path
 
 from kitchen_prefs.actors import load_actor
 from kitchen_prefs.evaluator import Evaluator
+from kitchen_prefs.files import write_json
 from kitchen_prefs.metrics import Interval
-from kitchen_prefs.records import write_json
 from kitchen_prefs.rollouts import BATCH_SIZE
 
 

@@ -11,10 +11,12 @@ from importlib.resources import files
 from pathlib import Path
 
 from kitchen_prefs.datasets.columns import fingerprint, read_columns, read_tasks
+from kitchen_prefs.files import write_json
 from kitchen_prefs.splits import DATA_VERSION
 
 MANIFEST = Path("meta") / "kitchen_prefs.json"
 FINGERPRINTS = Path(str(files("kitchen_prefs"))) / "data" / "fingerprints.json"
+KINDS = {"data_version": int, "fingerprint": str, "episodes": int, "frames": int, "files": dict}
 
 
 def write_manifest(name: str, root: Path) -> dict:
@@ -28,7 +30,7 @@ def write_manifest(name: str, root: Path) -> dict:
         "frames": len(columns["episode_index"]),
         "files": {str(path.relative_to(root)): _sha256(path) for path in _files(root)},
     }
-    (root / MANIFEST).write_text(json.dumps(manifest, indent=2) + "\n")
+    write_json(root / MANIFEST, manifest)
     return manifest
 
 
@@ -46,21 +48,20 @@ def read_manifest(name: str, root: Path) -> dict:
         ValueError: If the data set is incomplete, damaged, or of another version.
     """
     way_out = f"delete the folder {root} and ask for the data set again."
-    try:
-        manifest = json.loads((root / MANIFEST).read_text())
-        version, recorded = manifest["data_version"], manifest["files"]
-    except (OSError, ValueError, KeyError, TypeError) as error:
-        raise ValueError(f"The data set {name} is incomplete; {way_out}") from error
-    if version != DATA_VERSION:
+    damaged = f"The data set {name} is damaged ({{}} is not as written); {way_out}"
+    if not (root / MANIFEST).is_file():
+        raise ValueError(f"The data set {name} is incomplete; {way_out}")
+    manifest = _parse((root / MANIFEST).read_bytes())
+    if manifest is None:
+        raise ValueError(damaged.format(MANIFEST))
+    if manifest["data_version"] != DATA_VERSION:
         raise ValueError(
-            f"The data set {name} is of data version {version}, but this kitchen_prefs works with "
-            f"version {DATA_VERSION}; {way_out}"
+            f"The data set {name} is of data version {manifest['data_version']}, but this "
+            f"kitchen_prefs works with version {DATA_VERSION}; {way_out}"
         )
-    for file, digest in recorded.items():
-        if not (root / file).is_file() or _sha256(root / file) != digest:
-            raise ValueError(
-                f"The data set {name} is damaged ({file} is not as written); {way_out}"
-            )
+    wrong = _wrong_files(manifest["files"], root)
+    if wrong:
+        raise ValueError(damaged.format(wrong[0]))
     return manifest
 
 
@@ -70,8 +71,26 @@ def published_fingerprint(name: str) -> str | None:
 
 
 def _files(root: Path) -> list[Path]:
-    """All files of a data set but the manifest itself."""
-    return sorted(path for path in root.rglob("*") if path.is_file() and path != root / MANIFEST)
+    """All files that are read: those in data and meta but the manifest itself."""
+    found = (path for folder in ("data", "meta") for path in (root / folder).rglob("*"))
+    return sorted(path for path in found if path.is_file() and path != root / MANIFEST)
+
+
+def _parse(content: bytes) -> dict | None:
+    """The manifest, or None if it is not one."""
+    try:
+        manifest = json.loads(content)
+        known = all(isinstance(manifest[key], kind) for key, kind in KINDS.items())
+    except (ValueError, KeyError, TypeError):
+        return None
+    return manifest if known else None
+
+
+def _wrong_files(recorded: dict, root: Path) -> list[str]:
+    """The files that are missing, not recorded, or other than recorded."""
+    found = {str(path.relative_to(root)): _sha256(path) for path in _files(root)}
+    names = sorted(recorded.keys() | found.keys())
+    return [name for name in names if recorded.get(name) != found.get(name)]
 
 
 def _sha256(path: Path) -> str:

@@ -1,6 +1,5 @@
 """Record what the published data sets are, after a change of the data version."""
 
-import json
 import shutil
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -8,6 +7,7 @@ from tempfile import TemporaryDirectory
 from kitchen_prefs.datasets.manifest import FINGERPRINTS, read_manifest
 from kitchen_prefs.datasets.names import content_of, dataset_names
 from kitchen_prefs.datasets.writing import write_dataset
+from kitchen_prefs.files import write_json
 from kitchen_prefs.splits import DATA_VERSION
 
 
@@ -28,7 +28,4 @@ def record_published(cards: Path) -> None:
             write_dataset(content_of(name), root)
             fingerprints[name] = read_manifest(name, root)["fingerprint"]
             shutil.copyfile(root / "README.md", cards / f"{name}.md")
-    known = {"data_version": DATA_VERSION, "fingerprints": fingerprints}
-    unfinished = FINGERPRINTS.with_suffix(".unfinished")
-    unfinished.write_text(json.dumps(known, indent=2) + "\n")
-    unfinished.replace(FINGERPRINTS)
+    write_json(FINGERPRINTS, {"data_version": DATA_VERSION, "fingerprints": fingerprints})

@@ -1,15 +1,11 @@
 """How the placements are made: settle many, keep those farthest apart, test every pair."""
 
 import hashlib
-import json
-import os
 import platform
-from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
 from itertools import islice
 from multiprocessing import get_context
-from pathlib import Path
 from typing import Any
 
 import mujoco
@@ -17,6 +13,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 from tqdm import tqdm
 
+from kitchen_prefs.files import whole_file, write_json
 from kitchen_prefs.preferences import CATEGORIES
 from kitchen_prefs.scene.blocking import blocking_table
 from kitchen_prefs.scene.placements import PLACEMENTS_FILE, RECORD_FILE, Placements
@@ -122,12 +119,6 @@ def count(placements: Placements) -> dict[str, int]:
 def save_placements(placements: Placements, record: dict[str, Any]) -> None:
     """Write the placements and their record where `load_placements` finds them."""
     arrays = {name: getattr(placements, name) for name in Placements.__dataclass_fields__}
-    _replace_file(PLACEMENTS_FILE, lambda path: np.savez_compressed(path, **arrays))
-    _replace_file(RECORD_FILE, lambda path: path.write_text(json.dumps(record, indent=2) + "\n"))
-
-
-def _replace_file(path: Path, write: Callable[[Path], object]) -> None:
-    """Write beside the file first, so that it is never half written."""
-    beside = path.with_name(f".{path.name}")
-    write(beside)
-    os.replace(beside, path)
+    with whole_file(PLACEMENTS_FILE) as beside:
+        np.savez_compressed(beside, **arrays)
+    write_json(RECORD_FILE, record)

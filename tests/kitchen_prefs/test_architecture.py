@@ -1,6 +1,7 @@
 """The arrows of the architecture: who may import whom."""
 
 import ast
+from graphlib import TopologicalSorter
 from pathlib import Path
 
 import pytest
@@ -11,15 +12,34 @@ PACKAGES = {
     "lerobot_policy_kitchen_prefs": ROOT / "policies/lerobot_policy_kitchen_prefs",
     "kitchen_prefs_leaderboard": ROOT / "leaderboard/kitchen_prefs_leaderboard",
 }
-# scene -> kitchen -> {expert, sessions} -> {environment, datasets} -> rollouts; each layer may
-# import those before it.
-LAYERS = (
-    ("preferences", "instances", "splits"),
-    ("scene",),
-    ("kitchen",),
-    ("expert",),
-    ("sessions", "observations", "rewards", "demonstrations", "metrics"),
-    ("environment", "environment_config", "datasets"),
+# scene -> kitchen -> {expert, sessions} -> {environment, datasets} -> rollouts: every part of the
+# benchmark, each after all those that it may import.
+ORDER = (
+    "files",
+    "preferences",
+    "instances",
+    "splits",
+    "scene",
+    "kitchen",
+    "expert",
+    "sessions",
+    "observations",
+    "rewards",
+    "demonstrations",
+    "metrics",
+    "environment",
+    "environment_config",
+    "datasets",
+    "records",
+    "rollouts",
+    "checkpoints",
+    "actors",
+    "evaluator",
+    "selection",
+    "evaluation",
+    "commands",  # of the scene and of the data sets: they stand on top of everything but the CLI
+    "cli",
+    "__init__",
 )
 
 
@@ -43,19 +63,42 @@ def test_the_benchmark_imports_no_policy_and_no_leaderboard(path):
     assert not [name for name in imports(path) if name.startswith(above)]
 
 
-def test_layers_import_only_those_before_them():
-    layer_of = {module: i for i, modules in enumerate(LAYERS) for module in modules}
-    checked = 0
-    for path in files("kitchen_prefs"):
-        module = path.relative_to(PACKAGES["kitchen_prefs"]).parts[0].removesuffix(".py")
-        if module not in layer_of or path.name == "commands.py":
-            continue  # commands stand on top of everything
-        for name in imports(path):
-            parts = name.split(".")
-            if parts[0] == "kitchen_prefs" and len(parts) > 1 and parts[1] in layer_of:
-                checked += 1
-                assert layer_of[parts[1]] <= layer_of[module], f"{path.name} imports {name}"
-    assert checked > 30
+def part_of(module):
+    """The part of ORDER to which a module of kitchen_prefs belongs."""
+    parts = module.split(".")
+    return "commands" if parts[-1] == "commands" else parts[1] if len(parts) > 1 else "__init__"
+
+
+def module_of(path):
+    parts = path.relative_to(ROOT).with_suffix("").parts
+    return ".".join(parts).removesuffix(".__init__")
+
+
+MODULES = {module_of(path): path for path in files("kitchen_prefs")}
+
+
+def imported_modules(module):
+    """The modules of kitchen_prefs that one of them imports or takes names from."""
+    for name in imports(MODULES[module]):
+        taken_from = name if name in MODULES else name.rpartition(".")[0]
+        if taken_from in MODULES and name != "kitchen_prefs":
+            yield taken_from
+
+
+def test_every_module_has_its_place_in_the_order():
+    assert {part_of(module) for module in MODULES} == set(ORDER)
+
+
+@pytest.mark.parametrize("module", MODULES)
+def test_a_module_imports_only_parts_before_its_own(module):
+    own = ORDER.index(part_of(module))
+    above = [name for name in imported_modules(module) if ORDER.index(part_of(name)) > own]
+    assert not above
+
+
+def test_no_modules_import_each_other():
+    graph = {module: set(imported_modules(module)) - {module} for module in MODULES}
+    assert len(list(TopologicalSorter(graph).static_order())) == len(MODULES)
 
 
 def test_only_the_scene_knows_mujoco():

@@ -6,6 +6,7 @@ import pytest
 from gymnasium.utils.env_checker import check_env
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from lerobot.envs.utils import NEW_ROLLOUT_OPTION
 from scipy.stats import chisquare
 
 from kitchen_prefs import instances
@@ -19,19 +20,28 @@ from kitchen_prefs.environment import (
 )
 from kitchen_prefs.environment_config import KitchenPrefsEnv
 from kitchen_prefs.metrics import edit_similarity, packing_efficiency
+from kitchen_prefs.scene import layout
 from kitchen_prefs.sessions import expert_run, make_session
 from kitchen_prefs.splits import SPLITS, TEST_SPLITS
 
+JOINTS = (k.DOOR, k.BOTTOM_RACK, k.TOP_RACK)
 
-def play_expert(env):
-    """Let the expert act through poses; yields what each step returns."""
+
+def play_expert(env, observation):
+    """Let the expert act through poses; yields the row it chooses and what each step returns."""
     terminated = False
     while not terminated:
         action = env.expert_action()
-        row = env._seen.row_of(env.instance_of(action))
-        step = env.step(action)
-        terminated = step[2]
+        row, _ = nearest_row(instances.unpad(observation["instances"]), action)
+        observation, _, terminated, _, _ = step = env.step(action)
         yield row, step
+
+
+def pose_of(env, observation, instance):
+    """The action that chooses an instance."""
+    rows = instances.unpad(observation["instances"])
+    poses = rows[instances.choosable(rows), instances.POSE]
+    return next(pose for pose in poses if env.instance_of(pose) == instance)
 
 
 def test_gymnasium_accepts_it():
@@ -44,8 +54,8 @@ def test_gymnasium_accepts_it():
 def test_the_expert_is_perfect_through_poses(split):
     env = DishwasherLoading(split)
     for index in range(0, SPLITS[split].sessions, SPLITS[split].sessions // 5):
-        env.reset(options={"session": index})
-        *_, (_, last) = play_expert(env)
+        observation, _ = env.reset(options={"session": index})
+        *_, (_, last) = play_expert(env, observation)
         _, _, terminated, truncated, info = last
         assert terminated
         assert not truncated
@@ -56,8 +66,8 @@ def test_the_expert_is_perfect_through_poses(split):
 def test_every_choosable_row_has_its_own_pose():
     env = DishwasherLoading("unseen_both")
     for index in (0, 5, 35):
-        env.reset(options={"session": index})
-        for _, (observation, *_rest) in play_expert(env):
+        start, _ = env.reset(options={"session": index})
+        for _, (observation, *_rest) in play_expert(env, start):
             rows = instances.unpad(observation["instances"])
             poses = rows[instances.choosable(rows), instances.POSE]
             assert len(np.unique(poses.round(4), axis=0)) == len(poses)
@@ -68,7 +78,7 @@ def test_no_position_in_the_set_gives_the_choice_away():
     quantiles = []
     for index in range(0, 560, 14):
         observation, _ = env.reset(options={"session": index})
-        for row, (following, *_rest) in play_expert(env):
+        for row, (following, *_rest) in play_expert(env, observation):
             n = len(instances.unpad(observation["instances"]))
             quantiles.append((row + 0.5) / n)
             observation = following
@@ -79,14 +89,17 @@ def test_no_position_in_the_set_gives_the_choice_away():
 
 def test_closed_racks_hide_their_dishes():
     env = DishwasherLoading("seen")
-    env.reset(options={"session": 3})
-    seen = []
-    for _, (observation, *_rest) in play_expert(env):
-        rows = instances.unpad(observation["instances"])
-        seen.append((env._kitchen.out, int(rows[:, instances.IS_OBJECT].sum())))
-    racked = (env._kitchen.placement >= 0).sum()
-    assert racked > 0
-    assert seen[-1] == (None, 3)
+    start, _ = env.reset(options={"session": 3})
+    most = 0
+    for _, (observation, *_rest) in play_expert(env, start):
+        rows, scene = instances.unpad(observation["instances"]), env.scene()
+        seen = int(rows[:, instances.IS_OBJECT].sum()) - len(JOINTS)
+        on_counter = sum(position[2] > layout.COUNTER_HEIGHT for _, position, _ in scene.dishes)
+        most = max(most, seen - on_counter)
+        if not (scene.bottom_out or scene.top_out):
+            assert seen == on_counter
+    racked = sum(env.episode().placed)
+    assert 0 < most < racked  # those of one rack are seen while it is out, never those of both
 
 
 def test_seeds_start_the_sessions_in_turn():
@@ -110,13 +123,49 @@ def test_an_unseeded_reset_starts_a_fresh_session():
     assert (env.session.salt, env.session.index) == fresh[0]
 
 
+def test_a_salt_alone_draws_one_of_its_sessions():
+    env = DishwasherLoading("seen")
+    env.reset(seed=4)
+    drawn = set()
+    for _ in range(8):
+        env.reset(options={"salt": 5})
+        assert env.session.salt == 5
+        drawn.add(env.session.index)
+    assert len(drawn) > 4
+    env.reset(seed=71, options={"salt": 5})
+    assert (env.session.salt, env.session.index) == (5, 1)
+    env.reset(seed=71, options={"salt": 5, "session": 33})
+    assert (env.session.salt, env.session.index) == (5, 33)
+
+
+def test_lerobots_own_option_is_let_through():
+    env = DishwasherLoading("seen")
+    env.reset(seed=9, options={NEW_ROLLOUT_OPTION: True})
+    assert env.session.index == 9
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"sesion": 3}, "no option 'sesion'. Did you mean 'session'"),
+        ({"index": 3}, "There are: session, salt"),
+        ({"session": 3.5}, "'session' is a whole number, not 3.5"),
+        ({"session": 70}, r"0\.\.69"),
+        ({"salt": -1}, "natural number"),
+    ],
+)
+def test_impossible_options_are_refused_in_one_sentence(options, words):
+    with pytest.raises(ValueError, match=words):
+        DishwasherLoading("seen").reset(options=options)
+
+
 def test_it_ends_at_twice_the_experts_decisions():
     env = DishwasherLoading("seen")
-    env.reset(seed=0)
+    observation, _ = env.reset(seed=0)
     limit = LIMIT_FACTOR * len(expert_run(env.session).decisions)
-    door = env._seen.rows[env._seen.row_of(k.BOTTOM_RACK), instances.POSE]
+    rack = pose_of(env, observation, k.BOTTOM_RACK)
     for step in range(1, limit + 1):
-        _, reward, terminated, truncated, info = env.step(door)
+        _, reward, terminated, truncated, info = env.step(rack)
         assert not terminated
         assert reward == 0
         assert "door open" in info["refusal"]
@@ -128,7 +177,7 @@ def test_it_ends_at_twice_the_experts_decisions():
 def test_no_published_session_is_longer_than_lerobots_constant(split):
     longest = max(
         len(expert_run(make_session(split, index)).decisions)
-        for index in range(0, SPLITS[split].sessions, 3)
+        for index in range(SPLITS[split].sessions)
     )
     assert LIMIT_FACTOR * longest <= MAX_EPISODE_STEPS
 
@@ -164,9 +213,8 @@ def test_some_picks_fail_under_noise():
     env = DishwasherLoading("noisy")
     failed = 0
     for index in range(60):
-        env.reset(options={"session": index})
-        dish = env._seen.ids[env._seen.ids >= k.FIRST_DISH][0]
-        info = env.step(env._seen.rows[env._seen.row_of(dish), instances.POSE])[-1]
+        observation, _ = env.reset(options={"session": index})
+        info = env.step(pose_of(env, observation, k.FIRST_DISH))[-1]
         failed += info["refusal"] == "The grasp failed."
     assert 0 < failed < 12
 
@@ -175,22 +223,23 @@ def test_some_picks_fail_under_noise():
 @given(st.lists(st.floats(-3, 3, width=32), min_size=7, max_size=7))
 def test_any_pose_takes_the_nearest_row(action):
     env = DishwasherLoading("seen")
-    env.reset(seed=1)
-    rows = env._seen.rows
-    row, distance = nearest_row(rows, np.array(action, dtype=np.float32))
+    observation, _ = env.reset(seed=1)
+    rows, action = instances.unpad(observation["instances"]), np.array(action, dtype=np.float32)
+    row, distance = nearest_row(rows, action)
     assert instances.choosable(rows)[row]
     assert distance >= 0
-    info = env.step(np.array(action, dtype=np.float32))[-1]
-    assert info["distance"] == pytest.approx(distance)
+    taken = env.instance_of(action)
+    assert env.instance_of(rows[row, instances.POSE]) == taken
+    assert env.step(action)[-1]["distance"] == pytest.approx(distance)
+    assert env.episode().decisions == (taken,)
 
 
 def test_a_turned_quaternion_and_its_opposite_are_one_rotation():
-    env = DishwasherLoading("seen")
-    env.reset(seed=1)
-    for row in range(len(env._seen.rows)):
-        pose = env._seen.rows[row, instances.POSE].copy()
+    observation, _ = DishwasherLoading("seen").reset(seed=1)
+    rows = instances.unpad(observation["instances"])
+    for row, pose in enumerate(rows[:, instances.POSE].copy()):
         pose[3:] *= -1
-        assert nearest_row(env._seen.rows, pose) == (row, pytest.approx(0, abs=1e-3))
+        assert nearest_row(rows, pose) == (row, pytest.approx(0, abs=1e-3))
 
 
 @pytest.mark.parametrize(

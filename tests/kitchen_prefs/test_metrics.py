@@ -67,6 +67,7 @@ episodes = st.builds(
     expert_placed=st.tuples(st.integers(0, 5), st.integers(0, 5)),
     preference=st.integers(0, 3),
     closed=st.booleans(),
+    finished=st.booleans(),
 )
 
 
@@ -96,6 +97,13 @@ def test_a_dish_in_the_wrong_rack_lowers_packing():
     assert packing_efficiency(wrong) == pytest.approx((1 / 2 + 1) / 2)
     assert not success(wrong)
     assert shortcomings(wrong)["wrong rack"] == 1
+
+
+def test_a_kitchen_left_open_or_with_dishes_waiting_is_no_success():
+    assert success(episode_of())
+    assert not success(episode_of(closed=False))
+    # The expert drops what does not fit in the sink; leaving it on the counter packs as well.
+    assert not success(episode_of(finished=False, expert_sunk=1))
 
 
 def test_all_dishes_in_wrong_racks_pack_nothing():

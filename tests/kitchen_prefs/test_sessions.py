@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+from itertools import permutations
 
 import numpy as np
 import pytest
@@ -11,8 +12,6 @@ from kitchen_prefs.demonstrations import prompt_of
 from kitchen_prefs.preferences import CATEGORIES, TWELVE
 from kitchen_prefs.scene import layout
 from kitchen_prefs.sessions import (
-    _corners,
-    _overlap,
     expert_run,
     make_session,
     preference_with,
@@ -66,24 +65,41 @@ def test_salts_and_splits_give_other_sessions():
     assert len(poses) == 9
 
 
+class Rectangle:
+    """A turned rectangle on the counter, judged by points less than a centimetre apart."""
+
+    def __init__(self, centre, size, yaw):
+        self.centre, self.half = np.asarray(centre, dtype=float), np.asarray(size) / 2
+        self.turn = np.array([[np.cos(yaw), np.sin(yaw)], [-np.sin(yaw), np.cos(yaw)]])
+        grid = np.stack(np.meshgrid(*2 * [np.linspace(-1, 1, 61)]), axis=-1).reshape(-1, 2)
+        self.points = self.centre + grid * self.half @ self.turn  # (3721, 2)
+
+    def holds_any(self, points):
+        return (np.abs((points - self.centre) @ self.turn.T) < self.half).all(axis=1).any()
+
+
 @pytest.mark.parametrize("split", SPLITS)
 def test_dishes_stand_apart_on_the_counter_and_beside_the_sink(split):
-    session = make_session(split, 5)
-    boxes = []
-    for category, pose in zip(session.dishes.category, session.dishes.pose, strict=True):
-        extents = np.array(layout.EXTENTS[CATEGORIES[category]])
-        yaw = 2 * np.arctan2(pose[6], pose[3])
-        boxes.append(_corners(pose[:2].astype(float), extents[:2] / 2, yaw))
-        assert pose[2] == pytest.approx(layout.COUNTER_HEIGHT + extents[2] / 2)
-    corners = np.concatenate(boxes)
-    assert (corners[:, 0] > layout.COUNTER_X[0]).all()
-    assert (corners[:, 0] < layout.COUNTER_X[1]).all()
-    assert (corners[:, 1] > layout.COUNTER_Y[0]).all()
-    assert (corners[:, 1] < layout.COUNTER_Y[1]).all()
-    sink = _corners(np.array(layout.SINK_CENTRE), np.array(layout.SINK_SIZE[:2]) / 2, 0.0)
-    boxes.append(sink)
-    for i, box in enumerate(boxes):
-        assert not any(_overlap(box, other) for other in boxes[:i])
+    for index in (0, 5, 59):
+        session = make_session(split, index)
+        things = [Rectangle(layout.SINK_CENTRE, layout.SINK_SIZE[:2], yaw=0)]
+        for category, pose in zip(session.dishes.category, session.dishes.pose, strict=True):
+            extents = layout.EXTENTS[CATEGORIES[category]]
+            yaw = 2 * np.arctan2(pose[6], pose[3])
+            things.append(Rectangle(pose[:2], extents[:2], yaw))
+            assert pose[2] == pytest.approx(layout.COUNTER_HEIGHT + extents[2] / 2)
+        points = np.concatenate([thing.points for thing in things])
+        for axis, (low, high) in enumerate((layout.COUNTER_X, layout.COUNTER_Y)):
+            assert low < points[:, axis].min()
+            assert points[:, axis].max() < high
+        for a, b in permutations(things, 2):
+            assert not a.holds_any(b.points)
+
+
+def test_rectangles_that_overlap_are_found():
+    plate = Rectangle((0, 0), (0.2, 0.2), yaw=0.5)
+    assert plate.holds_any(Rectangle((0.15, 0), (0.2, 0.1), yaw=0).points)
+    assert not plate.holds_any(Rectangle((0.25, 0), (0.2, 0.1), yaw=0).points)
 
 
 @pytest.mark.parametrize("split", ["train", "unseen_counts", "many_preferences"])

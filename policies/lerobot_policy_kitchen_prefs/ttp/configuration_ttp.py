@@ -79,8 +79,8 @@ class TTPConfig(PreTrainedConfig):
     geometric_attention: bool = False
     avoid_repeats: bool = False
 
-    # Training preset (paper, appendix "Training"). The paper names no gradient clipping; LeRobot clips
-    # at a norm of 10 unless the optimiser is given otherwise.
+    # Training preset (paper, appendix "Training"). The paper names no gradient clipping;
+    # LeRobot clips at a norm of 10 unless the optimiser is given otherwise.
     optimizer_lr: float = 0.01
     optimizer_momentum: float = 0.9
     optimizer_dampening: float = 0.1

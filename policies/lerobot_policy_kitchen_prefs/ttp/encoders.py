@@ -18,8 +18,7 @@ FREQUENCIES = 8
 POSITION_RANGE = 4.0  # m, more than the counter's length; the shortest wave is 3 cm
 QUATERNION_RANGE = 2.0  # -1 to 1
 EXTENTS_RANGE = 1.0  # m; the shortest wave is 8 mm, so that 2.0 and 2.6 cm high plates differ
-# The longest session of twenty dishes ends at twice the expert's decisions, which is less.
-MAX_DECISIONS = 256
+MAX_DECISIONS = 256  # more than the longest episode has, `environment.MAX_EPISODE_STEPS`
 
 
 class InstanceEncoder(nn.Module):

@@ -41,10 +41,8 @@ class SlotAttention(nn.Module):
             queries = self.query(self.norm_slots(slots))  # (G, H, d)
             scores = queries @ keys.transpose(1, 2) * keys.shape[-1] ** -0.5  # (G, H, P)
             shares = scores.softmax(dim=1) * prompts.mask[:, None]  # each token is shared out
-            weights = shares / (
-                shares.sum(dim=-1, keepdim=True) + EPSILON
-            )  # of each slot, sum to 1
-            updates = weights @ values  # (G, H, d)
+            total = shares.sum(dim=-1, keepdim=True) + EPSILON  # (G, H, 1)
+            updates = shares / total @ values  # (G, H, d)
             slots = self.update(updates.flatten(0, 1), slots.flatten(0, 1)).view_as(slots)
             slots = slots + self.feedforward(slots)
         is_real = torch.ones_like(slots[..., 0], dtype=torch.bool)
