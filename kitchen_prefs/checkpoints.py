@@ -76,12 +76,12 @@ def read_config(folder: Path, options: Sequence[str]) -> PreTrainedConfig:
             setting.
     """
     file = folder / CONFIG
-    policy_type = _read_json(file).get("type")
+    with _damage_told(file):
+        policy_type = str(_read_json(file)["type"])
     known = PreTrainedConfig.get_known_choices()
     if policy_type not in known:
         raise ValueError(
-            f"{file} is of the unknown policy type {policy_type!r}. "
-            f"{suggest(str(policy_type), known)}"
+            f"{file} is of the unknown policy type {policy_type!r}. {suggest(policy_type, known)}"
         )
     check_settings(known[policy_type], options)
     with _damage_told(file):

@@ -100,7 +100,7 @@ class DishwasherLoading(gymnasium.Env):
         """Start a session.
 
         Args:
-            seed: Starts session `seed` modulo the split's size. Without a seed and a session, one
+            seed: Starts session `seed` modulo the split's size. Without a seed or a session, one
                 is drawn from this environment's own generator; unless a salt is given, so is the
                 salt, and the session is a fresh one, which no published split has.
             options: `{"session": i, "salt": k}` starts session i of salt k. The salt is 0 if only a

@@ -6,11 +6,15 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+import pyarrow as pa
 import pyarrow.parquet as pq
+from lerobot.datasets import aggregate_stats
+from lerobot.datasets.compute_stats import compute_episode_stats
+from lerobot.utils.constants import DEFAULT_FEATURES
 from tqdm import tqdm
 
 from kitchen_prefs import instances
-from kitchen_prefs.datasets.columns import fingerprint, read_columns, read_tasks
+from kitchen_prefs.datasets.columns import FEATURES, FPS, fingerprint, read_columns, read_tasks
 from kitchen_prefs.datasets.manifest import published_fingerprint, read_manifest
 from kitchen_prefs.datasets.names import Content, content_of, dataset_root
 from kitchen_prefs.environment import DishwasherLoading
@@ -20,6 +24,7 @@ from kitchen_prefs.splits import SPLITS
 
 REPLAYED = 20  # episodes spread over the data set; a wrong kitchen or expert shows in any of them
 STATS_TOLERANCE = 1e-3  # LeRobot adds float32 means of squares, so its deviations are that inexact
+EPISODE_FACTS = ("length", "dataset_from_index", "dataset_to_index")
 
 
 @dataclass(frozen=True)
@@ -33,6 +38,8 @@ class Data:
         tasks: As from `read_tasks`.
         stats: LeRobot's statistics.
         lengths: The number of frames of each episode, (E,).
+        starts: Its first frame, as LeRobot looks it up, (E,).
+        ends: The frame after its last, (E,).
     """
 
     content: Content
@@ -41,6 +48,8 @@ class Data:
     tasks: list[str]
     stats: dict[str, dict]
     lengths: np.ndarray
+    starts: np.ndarray
+    ends: np.ndarray
 
     def frames(self, episode: int) -> slice:
         """The frames of an episode."""
@@ -85,13 +94,14 @@ def _read(name: str) -> Data:
         read_columns(root),
         read_tasks(root),
         json.loads((root / "meta" / "stats.json").read_text()),
-        _lengths(root),
+        *_episode_facts(root),
     )
 
 
-def _lengths(root: Path) -> np.ndarray:
+def _episode_facts(root: Path) -> list[np.ndarray]:
     paths = sorted((root / "meta" / "episodes").glob("*/*.parquet"))
-    return np.concatenate([pq.read_table(path)["length"].to_numpy() for path in paths])
+    table = pa.concat_tables([pq.read_table(path, columns=list(EPISODE_FACTS)) for path in paths])
+    return [table[name].to_numpy() for name in EPISODE_FACTS]
 
 
 def _check_fingerprint(data: Data) -> None:
@@ -109,11 +119,16 @@ def _check_indices(data: Data) -> None:
         "episode_index": np.repeat(np.arange(len(lengths)), lengths),
         "frame_index": np.concatenate([np.arange(length) for length in lengths]),
     }
+    ends = np.cumsum(lengths)
     if len(lengths) != len(data.content.sessions):
         raise ValueError(f"{len(lengths)} episodes, not {len(data.content.sessions)}.")
     for name, values in expected.items():
         if not np.array_equal(columns[name], values):
             raise ValueError(f"the column {name} does not count up as it must.")
+    if not np.array_equal(columns["timestamp"], expected["frame_index"] / FPS):
+        raise ValueError("a timestamp is not its frame's.")
+    if not (np.array_equal(data.starts, ends - lengths) and np.array_equal(data.ends, ends)):
+        raise ValueError("LeRobot's first or last frame of an episode is not the episode's.")
     if not np.isin(columns["task_index"], np.arange(len(data.tasks))).all():
         raise ValueError("a task index has no task.")
 
@@ -133,18 +148,27 @@ def _check_rows(data: Data) -> None:
         raise ValueError("a chosen index points to a row that the decision may not choose.")
 
 
+def _check_ends(data: Data) -> None:
+    last = np.zeros(len(data.columns["index"]), dtype=bool)  # (F,)
+    last[np.cumsum(data.lengths) - 1] = True
+    for name in ("next.done", "next.success"):
+        if not np.array_equal(data.columns[name], last):
+            raise ValueError(f"the column {name} is not true at just the last frames.")
+
+
 def _check_statistics(data: Data) -> None:
-    for name, values in data.columns.items():
-        flat = values.reshape(-1, values.shape[-1] if values.ndim > 1 else 1).astype(np.float64)
-        computed = {
-            "min": flat.min(0),
-            "max": flat.max(0),
-            "mean": flat.mean(0),
-            "std": flat.std(0),
-        }
+    features = {**FEATURES, **DEFAULT_FEATURES}
+    of_episodes = []
+    for episode in tqdm(range(len(data.lengths)), "statistics", unit="episode", leave=False):
+        frames = data.frames(episode)
+        columns = {name: values[frames] for name, values in data.columns.items()}
+        of_episodes.append(compute_episode_stats(columns, features))
+    for name, computed in aggregate_stats(of_episodes).items():
         for kind, found in computed.items():
             recorded = np.array(data.stats[name][kind])
-            if not np.allclose(recorded, found, STATS_TOLERANCE, STATS_TOLERANCE):
+            if recorded.shape != found.shape or not np.allclose(
+                recorded, found, STATS_TOLERANCE, STATS_TOLERANCE
+            ):
                 raise ValueError(f"the recorded {kind} of the column {name} is not its {kind}.")
 
 
@@ -174,8 +198,10 @@ def _check_replay(data: Data) -> None:
         split, index = data.content.sessions[episode]
         environment = DishwasherLoading(split)
         environment.reset(options={"session": index})
-        for action in data.columns["action"][data.frames(episode)]:
-            environment.step(action)
+        frames = data.frames(episode)
+        rewards = [environment.step(action)[1] for action in data.columns["action"][frames]]
+        if not np.array_equal(rewards, data.columns["next.reward"][frames]):
+            raise ValueError(f"the rewards of episode {episode} are not those of its decisions.")
         facts = environment.episode()
         if packing_efficiency(facts) != 1 or edit_similarity(facts) != 1 or not facts.finished:
             raise ValueError(f"episode {episode} does not load the dishwasher as the expert does.")
@@ -185,8 +211,9 @@ CHECKS: dict[str, Callable[[Data], None]] = {
     "Its fingerprint is the recorded one.": _check_fingerprint,
     "Episodes, frames and tasks are numbered without gaps.": _check_indices,
     "All values are finite, and each chosen row may be chosen.": _check_rows,
-    "LeRobot's statistics are those of the columns.": _check_statistics,
+    "Just the last decision of each episode is done and successful.": _check_ends,
     "Each action is the pose of the chosen row.": _check_actions,
     "Each episode has the preference of its session, in label and words.": _check_labels,
+    "LeRobot's statistics are those of the columns.": _check_statistics,
     "Replayed in a kitchen without noise, demonstrations reach PE 1 and ED 1.": _check_replay,
 }

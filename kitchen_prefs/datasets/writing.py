@@ -44,8 +44,8 @@ Stats = dict[str, dict[str, np.ndarray]]
 
 
 @dataclass(frozen=True)
-class Episode:
-    """One demonstrated episode.
+class EpisodeFrames:
+    """The frames of one demonstrated episode.
 
     Attributes:
         columns: As from `columns_of`.
@@ -93,9 +93,10 @@ def write_dataset(content: Content, root: Path, workers: int | None = None) -> N
 
 
 @contextmanager
-def _demonstrated(content: Content, workers: int | None) -> Iterator[Iterator[Episode]]:
+def _demonstrated(content: Content, workers: int | None) -> Iterator[Iterator[EpisodeFrames]]:
     """The episodes of a data set in order, demonstrated by other processes."""
     # Forked processes start at once and need no `if __name__ == "__main__"` in the user's script.
+    # They may be forked from a process with torch's threads, as they compute with numpy alone.
     context = multiprocessing.get_context("fork" if sys.platform == "linux" else "spawn")
     with ProcessPoolExecutor(workers, context, initializer=_leave_with_parent) as pool:
         try:
@@ -118,10 +119,10 @@ def _leave_with_parent() -> None:
     threading.Thread(target=leave, daemon=True).start()
 
 
-def _demonstrate(session: tuple[str, int]) -> Episode:
+def _demonstrate(session: tuple[str, int]) -> EpisodeFrames:
     demonstration = demonstrate(make_session(*session))
     columns = columns_of(demonstration)
-    return Episode(columns, demonstration.task, compute_episode_stats(columns, ALL_FEATURES))
+    return EpisodeFrames(columns, demonstration.task, compute_episode_stats(columns, ALL_FEATURES))
 
 
 def _bookkeeping(number: int, start: int, frames: int, task_index: int) -> dict[str, np.ndarray]:

@@ -61,6 +61,14 @@ def test_what_goes_wrong_is_said_in_one_sentence(home):
     assert len(done.stderr.splitlines()) == 1
 
 
+def test_on_demand_the_traceback_is_shown(home):
+    done = run_program("datasets", "show", "dishwasher-tain-v1", KITCHEN_PREFS_DEBUG="1")
+    assert done.returncode == 1
+    assert "Traceback" in done.stderr
+    assert "There is no data set 'dishwasher-tain-v1'." in done.stderr
+    assert "KITCHEN_PREFS_DEBUG=1" in run("--help").output
+
+
 def test_one_unknown_name_keeps_the_others_from_being_made(home):
     assert run("datasets", "make", SMALL, "dishwasher-nonsense-v1").exit_code == 1
     assert list(home.iterdir()) == []

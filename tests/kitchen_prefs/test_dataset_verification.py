@@ -5,6 +5,8 @@ import pandas as pd
 import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
+from lerobot.datasets import aggregate_stats
+from lerobot.datasets.compute_stats import compute_episode_stats
 
 from kitchen_prefs.datasets import dataset_root, make_dataset
 from kitchen_prefs.datasets.columns import fingerprint, read_columns, read_tasks
@@ -65,6 +67,10 @@ def test_a_data_set_other_than_the_published_one_is_found(root, monkeypatch):
         ("action", 4, np.ones(7, np.float32), "action of frame 4 is not the pose"),
         ("preference", 5, 3, "episode 0 does not have the preference"),
         ("task_index", 5, 1, "task of episode 0 is not its preference"),
+        ("timestamp", 3, 3.5, "a timestamp is not its frame's"),
+        ("next.done", 3, True, "next.done is not true at just the last frames"),
+        ("next.success", 3, True, "next.success is not true at just the last frames"),
+        ("next.reward", 0, 1, "the rewards of episode 0"),
     ],
 )
 def test_a_wrong_value_is_found(root, column, frame, value, said):
@@ -74,7 +80,7 @@ def test_a_wrong_value_is_found(root, column, frame, value, said):
         list(verify_dataset(SMALL))
 
 
-@pytest.mark.parametrize("kind", ["min", "max", "mean", "std"])
+@pytest.mark.parametrize("kind", ["min", "max", "mean", "std", "q01", "q50", "q99"])
 def test_wrong_statistics_are_found(root, kind):
     path = root / "meta" / "stats.json"
     stats = json.loads(path.read_text())
@@ -82,6 +88,27 @@ def test_wrong_statistics_are_found(root, kind):
     path.write_text(json.dumps(stats))
     write_manifest(SMALL, root)
     with pytest.raises(ValueError, match=f"the recorded {kind} of the column action"):
+        list(verify_dataset(SMALL))
+
+
+def test_a_wrong_count_is_found(root):
+    path = root / "meta" / "stats.json"
+    stats = json.loads(path.read_text())
+    stats["action"]["count"][0] += 1
+    path.write_text(json.dumps(stats))
+    write_manifest(SMALL, root)
+    with pytest.raises(ValueError, match="the recorded count of the column action"):
+        list(verify_dataset(SMALL))
+
+
+@pytest.mark.parametrize("fact", ["dataset_from_index", "dataset_to_index"])
+def test_a_wrong_place_of_an_episode_is_found(root, fact):
+    path = root / "meta" / "episodes" / "chunk-000" / "file-000.parquet"
+    episodes = pd.read_parquet(path)
+    episodes.loc[1, fact] += 1
+    episodes.to_parquet(path)
+    write_manifest(SMALL, root)
+    with pytest.raises(ValueError, match="first or last frame of an episode"):
         list(verify_dataset(SMALL))
 
 
@@ -139,9 +166,13 @@ def spoil(root, column, frame, value):
     changed = pa.array(values.tolist(), table.schema.field(position).type)
     pq.write_table(table.set_column(position, column, changed), data_file(root))
     stats = json.loads((root / "meta" / "stats.json").read_text())
-    flat = values.reshape(len(values), -1).astype(np.float64)
-    for kind in ("min", "max", "mean", "std"):
-        stats[column][kind] = getattr(np, kind)(flat, axis=0).tolist()
+    lengths = pq.read_table(root / "meta" / "episodes")["length"].to_numpy()
+    of_episodes = [
+        compute_episode_stats({column: part}, {column: {"dtype": values.dtype.name}})
+        for part in np.split(values, np.cumsum(lengths)[:-1])
+    ]
+    fitting = aggregate_stats(of_episodes)[column]
+    stats[column] = {kind: found.tolist() for kind, found in fitting.items()}
     (root / "meta" / "stats.json").write_text(json.dumps(stats))
 
 

@@ -213,6 +213,41 @@ def test_a_half_written_data_set_is_refused(home):
         load_dataset(SMALL)
 
 
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"files": ["data/chunk-000/file-000.parquet"]},
+        {"fingerprint": None},
+        {"episodes": "4"},
+        {"data_version": None},
+    ],
+)
+def test_a_damaged_manifest_is_refused(home, change):
+    path = make_dataset(SMALL) / MANIFEST
+    path.write_text(json.dumps(json.loads(path.read_text()) | change))
+    with pytest.raises(ValueError, match=rf"is damaged \({MANIFEST} is not.*delete the folder"):
+        load_dataset(SMALL)
+
+
+@pytest.mark.parametrize("content", ["", "{", "[]", "null", "{}"])
+def test_a_manifest_that_is_none_is_refused(home, content):
+    (make_dataset(SMALL) / MANIFEST).write_text(content)
+    with pytest.raises(ValueError, match=rf"is damaged \({MANIFEST} is not.*delete the folder"):
+        load_dataset(SMALL)
+
+
+def test_the_files_are_those_of_the_manifest(home):
+    path = make_dataset(SMALL) / MANIFEST
+    whole = path.read_text()
+    path.write_text(json.dumps(json.loads(whole) | {"files": {}}))
+    with pytest.raises(ValueError, match=r"is damaged \(data/chunk-000/file-000\.parquet"):
+        load_dataset(SMALL)
+    path.write_text(whole)
+    (path.parents[1] / "data" / "chunk-000" / "file-001.parquet").touch()
+    with pytest.raises(ValueError, match=r"is damaged \(data/chunk-000/file-001\.parquet"):
+        load_dataset(SMALL)
+
+
 def test_a_data_set_of_another_version_is_refused(home):
     root = make_dataset(SMALL)
     manifest = json.loads((root / MANIFEST).read_text())
@@ -252,6 +287,31 @@ def test_two_processes_that_ask_at_once_share_one_data_set(home):
         assert process.returncode == 0, errors
         assert output == f"{SMALL} is in {dataset_root(SMALL)}\n"
     assert load_dataset(SMALL).num_episodes == 4
+
+
+def test_a_script_that_has_used_torchs_threads_makes_a_data_set(home):
+    """The workers are forked from a process with threads, and the script has no main guard."""
+    script = home / "script.py"
+    script.write_text(
+        "import torch\n"
+        "torch.set_num_threads(4)\n"
+        "weight = torch.ones(500, 500, requires_grad=True)\n"
+        "(weight @ weight).sum().backward()\n"
+        "from kitchen_prefs import load_dataset\n"
+        f"dataset = load_dataset('{SMALL}')\n"
+        "assert torch.equal(weight.grad, torch.full((500, 500), 1000.0))\n"
+        "print(dataset.num_episodes)\n"
+    )
+    done = subprocess.run(
+        [sys.executable, script],
+        check=False,
+        env={**os.environ, "HF_LEROBOT_HOME": str(home), "HF_DATASETS_CACHE": str(home / "cache")},
+        capture_output=True,
+        text=True,
+        timeout=120,
+    )
+    assert done.returncode == 0, done.stderr
+    assert done.stdout == "4\n"
 
 
 def test_after_a_kill_the_data_set_is_made_anew(home):

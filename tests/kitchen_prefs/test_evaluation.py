@@ -11,6 +11,7 @@ from lerobot.policies import make_pre_post_processors
 from lerobot.policies.act.configuration_act import ACTConfig
 from lerobot.policies.act.modeling_act import ACTPolicy
 from lerobot.utils.constants import ACTION, OBS_ENV_STATE, OBS_STATE
+from safetensors.torch import load_file, save_file
 from typer.testing import CliRunner
 
 from kitchen_prefs import evaluation, splits
@@ -104,12 +105,80 @@ def test_a_folder_without_a_policy_is_refused(tmp_path):
         load_actor()
 
 
+@pytest.mark.parametrize("policy_type", ["act", "ttp"])
+def test_a_policy_that_has_to_be_trained_is_not_scored_untrained(policy_type):
+    with pytest.raises(ValueError, match=f"'{policy_type}' has to be trained first: give --policy"):
+        load_actor(policy_type=policy_type)
+
+
+@pytest.mark.parametrize(
+    "file", ["model.safetensors", "policy_preprocessor.json", "policy_postprocessor.json"]
+)
+def test_a_checkpoint_that_lacks_a_file_is_refused(tmp_path, file):
+    (save_act(tmp_path) / file).unlink()
+    with pytest.raises(ValueError, match=f"^The checkpoint {tmp_path} lacks {file}; give another"):
+        load_actor(str(tmp_path))
+
+
+@pytest.mark.parametrize(
+    "file",
+    ["config.json", "model.safetensors", "policy_preprocessor.json", "policy_postprocessor.json"],
+)
+@pytest.mark.parametrize("content", [b"", b"[]", b'{"steps": 3}', b"\xff\xfe"])
+def test_a_damaged_file_of_a_checkpoint_is_named(tmp_path, file, content):
+    (save_act(tmp_path) / file).write_bytes(content)
+    with pytest.raises(ValueError, match=f"{tmp_path}.*; give another checkpoint") as caught:
+        load_actor(str(tmp_path))
+    assert "\n" not in str(caught.value)
+    if content != b'{"steps": 3}':  # which is JSON, but neither a config nor a processor
+        assert file in str(caught.value)
+
+
+def test_truncated_files_of_a_checkpoint_are_refused(tmp_path):
+    checkpoint = save_act(tmp_path)
+    for file in sorted(checkpoint.iterdir()):
+        if file.name == "train_config.json":
+            continue
+        whole = file.read_bytes()
+        file.write_bytes(whole[: len(whole) // 2])
+        with pytest.raises(ValueError, match="; give another checkpoint"):
+            load_actor(str(checkpoint))
+        file.write_bytes(whole)
+
+
+def test_a_checkpoint_of_an_unknown_type_is_answered_with_the_nearest(tmp_path):
+    checkpoint = save_act(tmp_path)
+    config = json.loads((checkpoint / "config.json").read_text())
+    (checkpoint / "config.json").write_text(json.dumps(config | {"type": "tttp"}))
+    with pytest.raises(ValueError, match=r"config\.json .*type 'tttp'\. Did you mean 'ttp'"):
+        load_actor(str(checkpoint))
+
+
+def test_a_checkpoint_with_a_setting_that_does_not_exist_is_refused(tmp_path):
+    checkpoint = save_act(tmp_path)
+    config = json.loads((checkpoint / "config.json").read_text())
+    (checkpoint / "config.json").write_text(json.dumps(config | {"no_such_setting": 1}))
+    with pytest.raises(ValueError, match=r"config\.json is damaged"):
+        load_actor(str(checkpoint))
+
+
+def test_a_weight_that_is_missing_is_not_drawn_at_random(tmp_path):
+    checkpoint = save_act(tmp_path)
+    weights = load_file(checkpoint / "model.safetensors")
+    weights.pop(sorted(weights)[0])
+    save_file(weights, checkpoint / "model.safetensors")
+    with pytest.raises(ValueError, match="do not fit the config"):
+        load_actor(str(checkpoint))
+
+
 @pytest.mark.usefixtures("few_sessions")
 def test_evaluate_keeps_one_line_an_episode(tmp_path):
     path, out = save_act(tmp_path / "act"), tmp_path / "out"
-    result = call("evaluate", f"--policy.path={path}", "--split=noisy,seen", f"--out={out}")
+    result = call("evaluate", f"--policy.path={path}", "--split=noisy,seen,noisy", f"--out={out}")
     assert "Score" in result.output
-    assert "mean of the splits" in result.output
+    assert result.output.count("noisy, 5 episodes") == 1
+    assert result.output.count("mean of the splits") == 1
+    assert result.output.split("mean of the splits")[1].count("95 % from") == 1
     assert len(read_episodes(out / "noisy.jsonl")) == 5
     assert json.loads((out / "seen.json").read_text())["episodes"] == 5
 
@@ -131,6 +200,14 @@ def test_the_expert_rule_is_perfect(tmp_path):
     assert {interval["low"] for interval in metrics.values()} == {1}
 
 
+@pytest.mark.parametrize("place", ["/proc/kitchen_prefs", "file", "file/below"])
+def test_a_folder_that_cannot_be_written_is_told_before_the_policy_is_loaded(tmp_path, place):
+    (tmp_path / "file").touch()
+    out = tmp_path / place
+    with pytest.raises(OSError, match=f"^{out} cannot be written; give another --out.$"):
+        call("evaluate", "--policy.path=nowhere", "--split=seen", f"--out={out}")
+
+
 def test_unknown_options_are_refused(tmp_path):
     for wrong in ("--splitt=seen", "--policy.rule"):
         with pytest.raises(ValueError, match=f"no option '{wrong}'"):
@@ -149,6 +226,7 @@ def test_select_names_the_best_checkpoint(tmp_path):
     best = max(scores, key=lambda step: scores[step])
     assert selection["best"] == f"checkpoints/{best}/pretrained_model"
     assert best in result.output
+    assert result.output.count("95 % from") == 2
 
 
 def test_a_run_without_checkpoints_cannot_be_selected_from(tmp_path):

@@ -1,5 +1,6 @@
 """Rollouts: the sessions' order and batches, the file of an evaluation, and what is refused."""
 
+import json
 from dataclasses import replace
 from types import SimpleNamespace
 from typing import cast
@@ -172,6 +173,33 @@ def test_a_damaged_line_is_named(tmp_path):
         EpisodeFile(path, STANDARD)
 
 
+def test_episodes_of_an_unknown_policy_are_not_adopted(tmp_path):
+    path = tmp_path / "seen.jsonl"
+    roll_out(Lowest(), "seen", sessions=[3], file=EpisodeFile(path, STANDARD))
+    (tmp_path / "seen.header.json").unlink()
+    with pytest.raises(ValueError, match=r"seen\.header\.json is not there; give another --out"):
+        EpisodeFile(path, STANDARD)
+    assert not (tmp_path / "seen.header.json").exists()
+
+
+@pytest.mark.parametrize("content", [b"[]", b"{", b"", b"\xff", b"null"])
+def test_a_damaged_header_is_named(tmp_path, content):
+    EpisodeFile(tmp_path / "seen.jsonl", STANDARD)
+    (tmp_path / "seen.header.json").write_bytes(content)
+    with pytest.raises(ValueError, match=r"seen\.header\.json is damaged; give another --out"):
+        EpisodeFile(tmp_path / "seen.jsonl", STANDARD)
+
+
+def test_in_the_experts_states_the_experts_load_is_no_merit(tmp_path):
+    path = tmp_path / "seen.jsonl"
+    file = EpisodeFile(path, replace(STANDARD, expert_states=True))
+    (episode,) = roll_out(Lowest(), "seen", sessions=[0], expert_states=True, file=file)
+    line = json.loads(path.read_text())
+    assert line["metrics"] == {"Category accuracy": category_accuracy(episode)}
+    assert "shortcomings" not in line
+    assert read_episodes(path) == [episode]
+
+
 def test_an_evaluation_summarises_its_split(tmp_path, monkeypatch):
     seen = splits.SPLITS["seen"]
     monkeypatch.setitem(splits.SPLITS, "seen", replace(seen, people=seen.people[:12]))
@@ -186,3 +214,17 @@ def test_an_evaluation_summarises_its_split(tmp_path, monkeypatch):
     assert 0 < episodes <= times <= 12
     assert (tmp_path / "seen.json").exists()
     assert Evaluator(actor, tmp_path, batch_size=8).evaluate("seen").episodes == 12
+
+
+def test_splits_count_the_same_in_their_mean(tmp_path, monkeypatch):
+    for name, sessions in (("seen", 28), ("val", 14)):
+        split = splits.SPLITS[name]
+        monkeypatch.setitem(splits.SPLITS, name, replace(split, people=split.people[:sessions]))
+    evaluator = Evaluator(cast(Actor, Lowest()), tmp_path, batch_size=32)
+    of_splits = [evaluator.evaluate(name).metrics["ED"] for name in ("seen", "val")]
+    mean = evaluator.mean_of_splits(("seen", "val"))["ED"]
+    assert mean.mean == pytest.approx((of_splits[0].mean + of_splits[1].mean) / 2)
+    assert mean.low < mean.mean < mean.high
+    # Two independent splits: the variance of their mean is a quarter of the sum of theirs.
+    widths = [interval.high - interval.low for interval in of_splits]
+    assert mean.high - mean.low == pytest.approx(np.hypot(*widths) / 2, rel=0.1)

@@ -3,8 +3,10 @@
 import numpy as np
 import pytest
 import torch
-from lerobot.envs import preprocess_observation
+from lerobot.envs import make_env_pre_post_processors, preprocess_observation
 from lerobot.envs.utils import env_to_policy_features
+from lerobot.policies import make_pre_post_processors
+from lerobot.scripts.lerobot_eval import eval_policy
 
 from kitchen_prefs.demonstrations import prompt_of
 from kitchen_prefs.environment_config import FEATURES_MAP, KitchenPrefsEnv
@@ -83,6 +85,30 @@ def test_a_rule_does_not_depend_on_the_batch():
     together = play("random", "seen", range(3))
     alone = [play("random", "seen", [i])[0] for i in range(3)]
     assert [episode.decisions for episode in together] == [episode.decisions for episode in alone]
+
+
+def evaluate_as_lerobot_does(rule, batch_size):
+    """The reward and the success of 16 sessions, by seed, as `lerobot-eval` finds them."""
+    config = KitchenPrefsEnv(task="unseen_both")
+    policy = make_rule(rule, config)
+    environment_steps = make_env_pre_post_processors(config, policy.config)
+    policy_steps = make_pre_post_processors(policy.config)
+    batch = config.create_envs(batch_size)["kitchen_prefs"][0]
+    results = eval_policy(
+        batch, policy, *environment_steps, *policy_steps, n_episodes=16, start_seed=1000
+    )
+    return {
+        episode["seed"]: (episode["sum_reward"], episode["success"])
+        for episode in results["per_episode"]
+    }
+
+
+@pytest.mark.parametrize("rule", ["random", "symbolic"])
+def test_lerobot_eval_finds_the_same_for_each_session_at_any_batch_size(rule):
+    one, seven, sixteen = (evaluate_as_lerobot_does(rule, size) for size in (1, 7, 16))
+    assert list(one) == list(range(1000, 1016))
+    assert one == seven == sixteen
+    assert len(set(one.values())) > 4
 
 
 def test_rules_take_sums_of_nothing():
