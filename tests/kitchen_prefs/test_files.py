@@ -11,11 +11,16 @@ def test_what_is_there_stays_until_the_new_file_is_whole(tmp_path):
     with whole_file(path) as beside:
         np.savez(beside, numbers=np.arange(3))
     whole = path.read_bytes()
-    with pytest.raises(KeyboardInterrupt), whole_file(path) as beside:
-        beside.write_bytes(b"half")
-        raise KeyboardInterrupt
+    with pytest.raises(KeyboardInterrupt):
+        write_half(path)
     assert path.read_bytes() == whole
     assert list(tmp_path.iterdir()) == [path]
+
+
+def write_half(path):
+    with whole_file(path) as beside:
+        beside.write_bytes(b"half")
+        raise KeyboardInterrupt
 
 
 def test_json_is_written_readably(tmp_path):
