@@ -12,7 +12,7 @@ from lerobot.utils.import_utils import register_third_party_plugins
 
 from benchmarks.measuring import Result, rates
 from kitchen_prefs import load_dataset
-from lerobot_policy_kitchen_prefs.recipe_files import recipe_file
+from kitchen_prefs.recipes import recipe_file
 
 STEPS = 10  # of training, a round
 SIZE = 1024  # of the yardstick's matrices

@@ -19,6 +19,7 @@ ORDER = (
     "preferences",
     "instances",
     "splits",
+    "recipes",
     "scene",
     "kitchen",
     "expert",
@@ -37,6 +38,7 @@ ORDER = (
     "evaluator",
     "selection",
     "evaluation",
+    "quickstart",
     "commands",  # of the scene and of the data sets: they stand on top of everything but the CLI
     "cli",
     "__init__",

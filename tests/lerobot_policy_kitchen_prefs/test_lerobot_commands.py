@@ -8,8 +8,8 @@ import sys
 import pytest
 
 from kitchen_prefs.datasets import make_dataset
+from kitchen_prefs.recipes import recipe_file
 from kitchen_prefs.records import read_episodes
-from lerobot_policy_kitchen_prefs.recipe_files import recipe_file
 
 DATASET = "dishwasher-train-p2-d3-v1"
 TRAIN = "lerobot.scripts.lerobot_train"

@@ -9,12 +9,12 @@ from PIL import Image
 from kitchen_prefs.actors import load_actor
 from kitchen_prefs.evaluator import Summary
 from kitchen_prefs.metrics import METRICS, summarise
+from kitchen_prefs.quickstart import training
+from kitchen_prefs.quickstart.pictures import draw_episode
+from kitchen_prefs.quickstart.report import write_learning_curve, write_table
+from kitchen_prefs.quickstart.training import Logged, read_log
+from kitchen_prefs.recipes import recipe_file
 from kitchen_prefs.rollouts import roll_out
-from lerobot_policy_kitchen_prefs.quickstart import training
-from lerobot_policy_kitchen_prefs.quickstart.pictures import draw_episode
-from lerobot_policy_kitchen_prefs.quickstart.report import write_learning_curve, write_table
-from lerobot_policy_kitchen_prefs.quickstart.training import Logged, read_log
-from lerobot_policy_kitchen_prefs.recipe_files import recipe_file
 
 LOG = """\
 INFO 2026-01-01 00:00:00 ot_train.py:600 step:50 smpl:2K ep:45 epch:0.08 loss:2.107 grdn:1.250 \

@@ -1,6 +1,7 @@
 """Runs `lerobot-train` on a recipe and reads its log."""
 
 import json
+import os
 import re
 import shutil
 import subprocess
@@ -10,10 +11,14 @@ from pathlib import Path
 
 from tqdm import tqdm
 
-from lerobot_policy_kitchen_prefs.recipe_files import recipe_file
+from kitchen_prefs.recipes import recipe_file
 
 PROGRESS = re.compile(r"Training: .*?(\d+)/(\d+) ")
 LOGGED = re.compile(r"step:\S+ .*?loss:(\S+) .*?accuracy:(\S+)")
+
+# The loader works beside the training. Two threads that wait for each other on a core that a third
+# process wants took ten times as long.
+ONE_THREAD = {"OMP_NUM_THREADS": "1"}
 
 
 @dataclass(frozen=True)
@@ -73,7 +78,12 @@ def _is_finished(checkpoint: Path) -> bool:
 def _run(command: list[str], log: Path) -> int:
     """Run a command with a bar that follows lerobot-train's own; its words go to the log."""
     process = subprocess.Popen(
-        command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace"
+        command,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        errors="replace",
+        env=os.environ | ONE_THREAD,
     )
     assert process.stdout is not None
     with log.open("w") as file, tqdm(desc="lerobot-train", unit="step") as bar:

@@ -5,9 +5,9 @@ from pathlib import Path
 import altair as alt
 
 from kitchen_prefs.evaluator import Summary
-from kitchen_prefs.records import write_json
+from kitchen_prefs.files import write_json
+from kitchen_prefs.quickstart.training import Logged
 from kitchen_prefs.splits import DATA_VERSION
-from lerobot_policy_kitchen_prefs.quickstart.training import Logged
 
 COLUMNS = ("PE", "ED_c", "TE", "Score")
 

@@ -37,7 +37,7 @@ def quickstart(
     make_dataset(TRAINING_DATA)
 
     typer.echo(f"2/4  Training: lerobot-train with the recipe {RECIPE}")
-    from lerobot_policy_kitchen_prefs.quickstart.training import read_log, train
+    from kitchen_prefs.quickstart.training import read_log, train
 
     run = out / "train"
     checkpoint = train(RECIPE, run)
@@ -46,7 +46,7 @@ def quickstart(
     summaries, shown = _evaluate(checkpoint, out)
 
     typer.echo("4/4  Table and pictures")
-    from lerobot_policy_kitchen_prefs.quickstart.report import write_learning_curve, write_table
+    from kitchen_prefs.quickstart.report import write_learning_curve, write_table
 
     typer.echo(f"\n{write_table(summaries, out)}")
     write_learning_curve(read_log(run), _log_freq(checkpoint), out / "learning_curve.png")
@@ -58,7 +58,7 @@ def quickstart(
 def _draw(episode: "Episode", out: Path) -> None:
     """Pictures need OpenGL; everything else does not."""
     try:
-        from lerobot_policy_kitchen_prefs.quickstart.pictures import draw_episode
+        from kitchen_prefs.quickstart.pictures import draw_episode
 
         draw_episode(episode, out)
     except OSError as error:
