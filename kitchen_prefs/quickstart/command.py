@@ -5,6 +5,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from kitchen_prefs.files import make_folder
+from kitchen_prefs.recipes import recipe_file
+
 if TYPE_CHECKING:
     from kitchen_prefs.evaluator import Summary
     from kitchen_prefs.metrics import Episode
@@ -15,7 +18,7 @@ RECIPE = "ttp_quick"
 TRAINING_DATA = "dishwasher-train-v1"
 EVALUATED = ("seen", "unseen_preferences")
 RULES = ("random", "majority", "expert")
-SHOWN = ("unseen_preferences", 0)  # the episode of the pictures
+SHOWN = ("unseen_preferences", 21)  # the episode of the pictures: all dishes are there at once
 
 
 @app.command()
@@ -31,6 +34,7 @@ def quickstart(
     For example:
     kitchen-prefs quickstart
     """
+    make_folder(out, "--out")
     typer.echo(f"1/4  Demonstrations: {TRAINING_DATA}")
     from kitchen_prefs.datasets import make_dataset
 
@@ -92,9 +96,9 @@ def _log_freq(checkpoint: Path) -> int:
 
 def _next_steps(checkpoint: Path) -> str:
     return f"""
-Next:
-  kitchen-prefs evaluate --policy.path={checkpoint} --split=unseen_both --out=outputs/ttp_quick
-  lerobot-eval --policy.path={checkpoint} --env.type=kitchen_prefs --env.task=seen \\
-    --eval.n_episodes=70 --eval.batch_size=10
-  lerobot-train --config_path={checkpoint}/train_config.json --resume=true --steps=20000
+Next, on preferences and numbers of dishes that training has not seen; and a longer training:
+  uv run kitchen-prefs evaluate --policy.path={checkpoint} \\
+    --split=unseen_both --out=outputs/ttp_quick
+  uv run lerobot-train --config_path={recipe_file(RECIPE)} \\
+    --steps=4000 --output_dir=outputs/ttp_longer
 """

@@ -13,7 +13,7 @@ from tqdm import tqdm
 
 from kitchen_prefs.recipes import recipe_file
 
-PROGRESS = re.compile(r"Training: .*?(\d+)/(\d+) ")
+PROGRESS = re.compile(r"Training: .*?(\d+)/(\d+) \[.*?\]")
 LOGGED = re.compile(r"step:\S+ .*?loss:(\S+) .*?accuracy:(\S+)")
 
 # The loader works beside the training. Two threads that wait for each other on a core that a third
@@ -91,6 +91,6 @@ def _run(command: list[str], log: Path) -> int:
             if progress := PROGRESS.search(line):
                 bar.total = int(progress.group(2))
                 bar.update(int(progress.group(1)) - bar.n)
-            else:
-                file.write(line)
+            if said := PROGRESS.sub("", line).strip():  # what is logged follows on the bar's line
+                file.write(f"{said}\n")
     return process.wait()

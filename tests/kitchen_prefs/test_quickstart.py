@@ -1,6 +1,7 @@
 """The parts of the quickstart that need no training."""
 
 import json
+import sys
 
 import numpy as np
 import pytest
@@ -46,6 +47,14 @@ def test_a_training_that_was_stopped_begins_anew(tmp_path, monkeypatch):
     training.train("ttp_quick", tmp_path / "run")
     assert not (tmp_path / "run" / "left").exists()
     assert len(calls) == 1
+
+
+def test_what_lerobot_train_logs_beside_its_bar_is_kept(tmp_path):
+    bar = "Training:   5%|▌         | 50/1000 [00:12<03:50,  4.12step/s]"
+    script = f"print({bar!r} + {LOG.splitlines()[0]!r}); print({bar!r}, end='\\r'); print('end')"
+    assert training._run([sys.executable, "-c", script], tmp_path / "train.log") == 0
+    assert read_log(tmp_path / "train") == [Logged(2.107, 0.271)]
+    assert (tmp_path / "train.log").read_text().splitlines()[-1] == "end"
 
 
 def test_a_failed_training_names_its_log(tmp_path, monkeypatch):
