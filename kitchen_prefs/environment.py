@@ -177,15 +177,22 @@ class DishwasherLoading(gymnasium.Env):
         row = self._seen.row_of(choose(self._view, self._session.preference))
         return self._seen.rows[row, instances.POSE]
 
-    def scene(self) -> SceneState:
-        """What a renderer draws."""
+    def scene(self, opened: bool = False) -> SceneState:
+        """What a renderer draws.
+
+        Args:
+            opened: Draw the door open and both racks pulled out, whatever they are, so that a
+                picture shows what is in them.
+        """
         kitchen = self._kitchen
+        poses = kitchen.pose if opened else kitchen.pose_in_world()
         dishes = tuple(
             (CATEGORIES[kitchen.dishes.category[i]], pose[:3], pose[3:])
-            for i, pose in enumerate(kitchen.pose_in_world())
+            for i, pose in enumerate(poses)
             if kitchen.place[i] != Place.TO_COME
         )
-        return SceneState(kitchen.door_open, kitchen.out == "bottom", kitchen.out == "top", dishes)
+        joints = (kitchen.door_open, kitchen.out == "bottom", kitchen.out == "top")
+        return SceneState(*((True, True, True) if opened else joints), dishes)
 
     def digest(self) -> str:
         """A hash of the kitchen's state."""

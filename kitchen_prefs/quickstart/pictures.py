@@ -18,7 +18,7 @@ LAST_FRAME_MS = 2500
 
 
 def draw_episode(episode: Episode, folder: Path) -> None:
-    """Draw start.png, end.png and episode.gif.
+    """Draw start.png, end.png (with the racks pulled out, to show the load) and episode.gif.
 
     Args:
         episode: Whose actions are replayed.
@@ -29,7 +29,7 @@ def draw_episode(episode: Episode, folder: Path) -> None:
     figure = Renderer(*FIGURE_SIZE, "fine")
     Image.fromarray(figure.render(environment.scene())).save(folder / "start.png")
     frames = list(_frames(environment, episode))
-    Image.fromarray(figure.render(environment.scene())).save(folder / "end.png")
+    Image.fromarray(figure.render(environment.scene(opened=True))).save(folder / "end.png")
     figure.close()
     frames[0].save(
         folder / "episode.gif",
