@@ -11,6 +11,7 @@ import numpy as np
 
 from kitchen_prefs import instances
 from kitchen_prefs import kitchen as k
+from kitchen_prefs.actions import nearest_row
 from kitchen_prefs.demonstrations import prompt_of
 from kitchen_prefs.expert import KitchenView, choose
 from kitchen_prefs.kitchen import Kitchen, Place, kind_of
@@ -35,7 +36,6 @@ LIMIT_FACTOR = 2  # an episode ends at twice the expert's number of decisions
 # Twice the longest expert of any published session is less (tests/kitchen_prefs/test_environment.py
 # measures it).
 MAX_EPISODE_STEPS = 160
-METRES_PER_RADIAN = 0.1  # what a turn counts in the distance between two poses
 FRESH_SALTS = 2**31  # an unseeded reset draws its salt below this, never the published salt 0
 RESET_OPTIONS = ("session", "salt")
 # LeRobot's mark of a new rollout (lerobot.envs.utils.NEW_ROLLOUT_OPTION); it changes nothing here.
@@ -292,37 +292,6 @@ class DishwasherLoading(gymnasium.Env):
             "distance": distance,
             "session": self._session.index,
         }
-
-
-def nearest_row(rows: np.ndarray, action: np.ndarray) -> tuple[int, float]:
-    """The row that an action chooses.
-
-    Args:
-        rows: The instance set, (n, 13).
-        action: A pose: position (m) and quaternion (wxyz), (7,).
-
-    Returns:
-        The nearest row that the decision may choose, the lowest on a tie, and its distance:
-        |position difference| in m + 0.1 x the angle between the rotations in rad.
-
-    Raises:
-        ValueError: If the action has another shape or is not finite.
-    """
-    action = np.asarray(action, dtype=np.float64)
-    if action.shape != (7,):
-        raise ValueError(
-            f"An action is a pose of 7 numbers (x y z qw qx qy qz); this one has {action.shape}."
-        )
-    if not np.isfinite(action).all():
-        raise ValueError("An action must be finite; this one holds NaN or infinity.")
-    candidates = np.flatnonzero(instances.choosable(rows))  # (c,)
-    poses = rows[candidates, instances.POSE].astype(np.float64)  # (c, 7)
-    metres = np.linalg.norm(poses[:, :3] - action[:3], axis=1)  # (c,)
-    lengths = np.linalg.norm(poses[:, 3:], axis=1) * max(np.linalg.norm(action[3:]), 1e-12)
-    cosine = np.abs(poses[:, 3:] @ action[3:]) / lengths  # q and -q are one rotation
-    distance = metres + METRES_PER_RADIAN * 2 * np.arccos(np.clip(cosine, 0, 1))  # (c,)
-    nearest = int(distance.argmin())
-    return int(candidates[nearest]), float(distance[nearest])
 
 
 def _check_options(options: dict[str, Any]) -> None:

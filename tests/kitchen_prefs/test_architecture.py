@@ -18,6 +18,7 @@ ORDER = (
     "files",
     "preferences",
     "instances",
+    "actions",
     "splits",
     "recipes",
     "scene",

@@ -11,12 +11,12 @@ from scipy.stats import chisquare
 
 from kitchen_prefs import instances
 from kitchen_prefs import kitchen as k
+from kitchen_prefs.actions import nearest_row
 from kitchen_prefs.environment import (
     LIMIT_FACTOR,
     MAX_EPISODE_STEPS,
     TASK,
     DishwasherLoading,
-    nearest_row,
 )
 from kitchen_prefs.environment_config import KitchenPrefsEnv
 from kitchen_prefs.metrics import edit_similarity, packing_efficiency
