@@ -62,7 +62,7 @@ def evaluate(
 
     For example:
     kitchen-prefs evaluate --split=seen,unseen_counts --out=outputs/ttp
-    --policy.path=outputs/train/ttp_quick/checkpoints/last/pretrained_model
+    --policy.path=outputs/ttp_quick/checkpoints/last/pretrained_model
 
     A policy that needs no training:
     kitchen-prefs evaluate --split=seen --out=outputs/symbolic
@@ -99,7 +99,7 @@ def select(
     Writes RUN/selection.json; a command that was killed goes on.
 
     For example:
-    kitchen-prefs select outputs/train/ttp_quick
+    kitchen-prefs select outputs/ttp_quick
     """
     from kitchen_prefs.selection import select_checkpoint
 
