@@ -287,7 +287,7 @@ class DishwasherLoading(gymnasium.Env):
 
     def _info(self, refusal: str, distance: float) -> dict[str, Any]:
         return {
-            "is_success": success(self.episode()),
+            "is_success": self._kitchen.finished and success(self.episode()),
             "refusal": refusal,
             "distance": distance,
             "session": self._session.index,
