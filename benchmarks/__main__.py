@@ -14,7 +14,7 @@ from benchmarks.training import training_steps
 
 
 def main(out: Path = Path("outputs/benchmarks.json")) -> None:
-    """Measure everything; takes about two minutes on two cores.
+    """Measure everything; takes about four minutes on two cores.
 
     For example:
     uv run python -m benchmarks

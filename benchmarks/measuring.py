@@ -5,6 +5,8 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from tqdm import tqdm
+
 ROUNDS = 5  # the median of five is steady against another process that wakes up once
 
 
@@ -39,7 +41,7 @@ def rates(*works: Callable[[], int]) -> list[float]:
         The median rate of each work.
     """
     found: list[list[float]] = [[] for _ in works]
-    for _ in range(ROUNDS):
+    for _ in tqdm(range(ROUNDS), unit="round", leave=False):
         for rate, work in zip(found, works, strict=True):
             start = time.perf_counter()
             units = work()

@@ -1,62 +1,48 @@
-"""Training steps a second of TTP beside a matrix product, and the data's share of a step."""
+"""Training steps of each TTP recipe: their parts, and their arithmetic beside matrix products."""
 
-import time
 from collections.abc import Callable, Iterator
-from itertools import cycle
 
-import draccus
 import torch
-from lerobot.configs.train import TrainPipelineConfig
-from lerobot.policies import make_policy, make_pre_post_processors
-from lerobot.utils.import_utils import register_third_party_plugins
 
 from benchmarks.measuring import Result, rates
-from kitchen_prefs import load_dataset
-from kitchen_prefs.recipes import recipe_file
+from benchmarks.steps import Training
 
-STEPS = 10  # of training, a round
+# Steps a round: many beside the batches that the loader has ready, few where a step takes seconds.
+STEPS = {"ttp_quick": 30, "ttp_plus": 30, "ttp_paper": 2}
 SIZE = 1024  # of the yardstick's matrices
+PRODUCTS = 10  # a round
+WHOLE_STEP = ("the whole step", 100)
 
 
 def training_steps() -> Iterator[Result]:
-    register_third_party_plugins()
-    config = draccus.parse(TrainPipelineConfig, str(recipe_file("ttp_quick")), args=[])
-    dataset = load_dataset("dishwasher-val-v1")
-    policy = make_policy(config.policy, ds_meta=dataset.meta)
-    preprocess, _ = make_pre_post_processors(config.policy, dataset_stats=dataset.meta.stats)
-    loader = torch.utils.data.DataLoader(dataset, batch_size=config.batch_size, shuffle=True)
-    batches = cycle(loader)
-    optimizer = config.policy.get_optimizer_preset().build(policy.get_optim_params())
-    spent = {"data": 0.0, "update": 0.0}
+    for recipe, steps in STEPS.items():
+        yield from _training(recipe, steps)
 
-    def timed(part: str, work: Callable):
-        start = time.perf_counter()
-        result = work()
-        spent[part] += time.perf_counter() - start
-        return result
 
-    def update(batch: dict) -> None:
-        loss, _ = policy.forward(batch)
-        loss.backward()
-        optimizer.step()
-        optimizer.zero_grad()
+def _training(recipe: str, steps: int) -> Iterator[Result]:
+    training = Training(recipe)
+    size, padding = training.count(steps)
+    dtypes = dict.fromkeys(("float32", training.dtype))
+    rate, *products = rates(lambda: training.run(steps), *map(_products, dtypes))
+    what = f"TTP, recipe {recipe}, batches of {training.batch_size}"
+    yield Result(what, rate, "steps/s", f"products of {SIZE} x {SIZE} matrices", products[0])
+    for dtype, product in zip(dtypes, products, strict=True):
+        reached = 2 * SIZE**3 * product / 1e9
+        yield Result("  arithmetic", rate * size / 1e9, "GFLOP/s", f"{dtype} products", reached)
+    shares = training.shares()
+    for part, share in shares.items():
+        yield Result(f"  of which {part}", share, "% of a step", *WHOLE_STEP)
+    yield Result("  rows that are padding", padding, "%", "all rows", 100)
+    wasted = shares["data"] + padding / 100 * (shares["forward"] + shares["backward"])
+    yield Result("  data and padding together", wasted, "% of a step", *WHOLE_STEP)
 
-    def steps() -> int:
-        policy.train()
-        for _ in range(STEPS):
-            batch = timed("data", lambda: preprocess(next(batches)))
-            timed("update", lambda batch=batch: update(batch))
-        return STEPS
 
-    matrix = torch.randn(SIZE, SIZE)
+def _products(dtype: str) -> Callable[[], int]:
+    matrix = torch.randn(SIZE, SIZE, dtype=getattr(torch, dtype))
 
     def products() -> int:
-        for _ in range(10):
+        for _ in range(PRODUCTS):
             matrix @ matrix
-        return 10
+        return PRODUCTS
 
-    rate, yardstick = rates(steps, products)
-    name = f"TTP, recipe ttp_quick, batches of {config.batch_size}"
-    share = 100 * spent["data"] / sum(spent.values())
-    yield Result(name, rate, "steps/s", f"products of {SIZE} x {SIZE} matrices", yardstick)
-    yield Result("  of which data", share, "% of a step", "the whole step", 100)
+    return products

@@ -26,7 +26,7 @@ from kitchen_prefs.observations import (
 from kitchen_prefs.preferences import CATEGORIES, RACKS
 from kitchen_prefs.rewards import reward
 from kitchen_prefs.scene.state import SceneState
-from kitchen_prefs.sessions import Session, expert_run, make_session, prompt_session
+from kitchen_prefs.sessions import Session, expert_run, make_session, prompt_sessions
 from kitchen_prefs.splits import get_split, suggest
 
 TRACKS = ("standard", "privileged", "language")
@@ -47,13 +47,15 @@ class DishwasherLoading(gymnasium.Env):
 
     Observations: `instances` (N, 13) the visible set, padded; `environment_state` (E,) a flat
     summary of it; `agent_pos` (S,) joints, category in hand, decision index; `prompt` (P, 14) the
-    whole prompt demonstration, padded; on the privileged track also `preference` (1,), the label.
+    whole prompt demonstration, padded, or several of them, one below the other; on the privileged
+    track also `preference` (1,), the label.
 
     Args:
         split: The split whose sessions are played.
         track: "standard" tells nothing of the preference but the prompt, "privileged" adds the
             label, "language" gives the preference in words as `task_description`.
         prompt_of: "same", or "other" for a prompt of another preference (the metric prompt use).
+        prompts: How many demonstrations prompt an episode.
         render_mode: None or "rgb_array".
 
     Raises:
@@ -69,6 +71,7 @@ class DishwasherLoading(gymnasium.Env):
         split: str = "seen",
         track: str = "standard",
         prompt_of: str = "same",
+        prompts: int = 1,
         render_mode: str | None = None,
     ) -> None:
         if track not in TRACKS:
@@ -76,6 +79,7 @@ class DishwasherLoading(gymnasium.Env):
         self.split = get_split(split)
         self.track = track
         self.prompt_of = prompt_of
+        self.prompts = prompts
         self.render_mode = render_mode
         self.action_space = _box(7)
         self.observation_space = gymnasium.spaces.Dict(
@@ -83,7 +87,7 @@ class DishwasherLoading(gymnasium.Env):
                 "instances": _box(instances.CAPACITY, instances.COLUMNS),
                 "environment_state": _box(ENVIRONMENT_STATE_SIZE),
                 "agent_pos": _box(STATE_SIZE),
-                "prompt": _box(instances.PROMPT_CAPACITY, instances.PROMPT_COLUMNS),
+                "prompt": _box(prompts * instances.PROMPT_CAPACITY, instances.PROMPT_COLUMNS),
                 **({"preference": _box(1)} if track == "privileged" else {}),
             }
         )
@@ -250,7 +254,8 @@ class DishwasherLoading(gymnasium.Env):
         self._grasp = self._session.generator("grasp") if self.split.noisy else None
         self._observer = Observer(self._kitchen, self._session.generator("order"), noise)
         self._limit = LIMIT_FACTOR * len(expert_run(self._session).decisions)
-        self._prompt = prompt_of(prompt_session(self._session, self.prompt_of))
+        sources = prompt_sessions(self._session, self.prompt_of, self.prompts)
+        self._prompt = np.concatenate([prompt_of(source) for source in sources])
         self._decisions: list[int] = []
         self._actions: list[tuple[float, ...]] = []
         self._forbidden: list[bool] = []

@@ -47,6 +47,9 @@ def evaluate(
     salt: Annotated[
         int, typer.Option(help="0: the published sessions; else fresh ones.", min=0)
     ] = 0,
+    prompts: Annotated[
+        int, typer.Option(help="How many demonstrations prompt an episode.", min=1)
+    ] = 1,
     batch_size: BatchSize = 16,
     prompt_use: Annotated[
         bool, typer.Option("--prompt-use", help="Also play with another preference's prompt.")
@@ -75,7 +78,7 @@ def evaluate(
     from kitchen_prefs.evaluator import Evaluator
 
     actor = load_actor(path, policy_type, settings, track=track)
-    evaluator = Evaluator(actor, out, salt, batch_size)
+    evaluator = Evaluator(actor, out, salt, prompts, batch_size)
     summaries = []
     for name in names:
         summary = evaluator.evaluate(

@@ -51,12 +51,14 @@ class Evaluator:
         actor: The policy.
         folder: Holds <split>.jsonl, one line an episode, and <split>.json, the summary.
         salt: Which drawing of the sessions; 0 is the published one.
+        prompts: How many demonstrations prompt an episode.
         batch_size: How many sessions are played at once.
     """
 
     actor: Actor
     folder: Path
     salt: int = 0
+    prompts: int = 1
     batch_size: int = BATCH_SIZE
 
     def evaluate(
@@ -70,7 +72,8 @@ class Evaluator:
             with_category_accuracy: Ask for the policy's choices in the expert's states, too.
 
         Raises:
-            ValueError: If the folder holds episodes of another policy, track, salt or version.
+            ValueError: If the folder holds episodes of another policy, track, salt, number of
+                prompts or version.
         """
         episodes = self.episodes(split)
         metrics = {name: summarise(episodes, metric) for name, metric in METRICS.items()}
@@ -102,6 +105,7 @@ class Evaluator:
             salt=self.salt,
             track=self.actor.track,
             prompt_of=prompt_of,
+            prompts=self.prompts,
             expert_states=expert_states,
             batch_size=self.batch_size,
             file=EpisodeFile(
@@ -119,6 +123,7 @@ class Evaluator:
             fingerprint=self._fingerprint,
             track=self.actor.track,
             prompt_of=prompt_of,
+            prompts=self.prompts,
             expert_states=expert_states,
             salt=self.salt,
             data_version=DATA_VERSION,

@@ -23,6 +23,7 @@ class Conditions:
         fingerprint: A hash of its weights and of the settings that change what it does.
         track: What the policy is told: "standard", "privileged" or "language".
         prompt_of: Whose demonstration the prompt is: of the "same" or of an "other" preference.
+        prompts: How many demonstrations prompt an episode.
         expert_states: Whether the decisions were taken in the expert's states.
         salt: Which drawing of the split's sessions; 0 is the published one.
         data_version: The version of the sessions.
@@ -33,6 +34,7 @@ class Conditions:
     fingerprint: str
     track: str
     prompt_of: str
+    prompts: int
     expert_states: bool
     salt: int
     data_version: int

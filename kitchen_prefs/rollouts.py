@@ -36,6 +36,7 @@ def roll_out(
     salt: int = 0,
     track: str = "standard",
     prompt_of: str = "same",
+    prompts: int = 1,
     expert_states: bool = False,
     batch_size: int = BATCH_SIZE,
     file: EpisodeFile | None = None,
@@ -49,6 +50,7 @@ def roll_out(
         salt: Which drawing of the sessions; 0 is the published one.
         track: What the environment tells the policy.
         prompt_of: "same", or "other" for a prompt of another preference.
+        prompts: How many demonstrations prompt an episode.
         expert_states: Carry out the expert's decisions and note what the policy would have chosen,
             see `metrics.category_accuracy`.
         batch_size: How many sessions are played at once. What a deterministic policy does in a
@@ -61,13 +63,15 @@ def roll_out(
         The episodes, one a session, in the sessions' order.
 
     Raises:
-        ValueError: If the split, a session, the track or `prompt_of` does not exist.
+        ValueError: If the split, a session, the track or `prompt_of` does not exist, or if there
+            are not so many prompts.
     """
     wanted = list(range(get_split(split).sessions) if sessions is None else sessions)
     episodes = {e.session: e for e in file.episodes} if file else {}
     missing = [session for session in wanted if session not in episodes]
     environments = [
-        DishwasherLoading(split, track, prompt_of) for _ in range(min(batch_size, len(missing)))
+        DishwasherLoading(split, track, prompt_of, prompts)
+        for _ in range(min(batch_size, len(missing)))
     ]
     name, done = file.path.stem if file else split, len(wanted) - len(missing)
     with (

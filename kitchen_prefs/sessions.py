@@ -106,17 +106,23 @@ def expert_run(session: Session) -> Run:
 
 
 def prompt_session(session: Session, of: str = "same") -> Session:
-    """The session whose demonstration is a session's prompt.
+    """The session whose demonstration is a session's prompt, see `prompt_sessions`."""
+    return prompt_sessions(session, of, 1)[0]
+
+
+def prompt_sessions(session: Session, of: str, count: int) -> tuple[Session, ...]:
+    """The sessions whose demonstrations are a session's prompts, all different.
 
     Prompts of seen preferences come from `train`, those of the others from `prompts`, with the same
     salt; never the session itself where there is another one.
 
     Args:
         session: The situation.
-        of: "same" for the right prompt, "other" for one of another preference of the split.
+        of: "same" for right prompts, "other" for those of another preference of the split.
+        count: How many; the first of several is the only one of one.
 
     Raises:
-        ValueError: If `of` is neither.
+        ValueError: If `of` is neither, or if there are not so many sessions to prompt with.
     """
     if of not in ("same", "other"):
         raise ValueError(f"A prompt is of the 'same' or of an 'other' preference, not {of!r}.")
@@ -131,7 +137,13 @@ def prompt_session(session: Session, of: str = "same") -> Session:
     candidates = [i for i, candidate in enumerate(source.people) if candidate == person]
     if source == split and len(candidates) > 1:
         candidates = [i for i in candidates if i != session.index]
-    return make_session(source.name, int(generator.choice(candidates)), session.salt)
+    if not 1 <= count <= len(candidates):
+        raise ValueError(
+            f"An episode of {session.split!r} has 1 to {len(candidates)} prompts, not {count}."
+        )
+    first = int(generator.choice(candidates))
+    more = generator.permutation([i for i in candidates if i != first])[: count - 1].tolist()
+    return tuple(make_session(source.name, index, session.salt) for index in (first, *more))
 
 
 def label_of(preference: Preference) -> int:

@@ -10,6 +10,7 @@ from kitchen_prefs.quickstart.training import Logged
 from kitchen_prefs.splits import DATA_VERSION
 
 COLUMNS = ("PE", "ED_c", "TE", "Score")
+COLOURS = {"all decisions": "#b5533c", "pick decisions": "#2f6f73", "place decisions": "#c9a13b"}
 
 
 def write_table(summaries: dict[str, dict[str, Summary]], folder: Path) -> str:
@@ -44,27 +45,37 @@ def write_table(summaries: dict[str, dict[str, Summary]], folder: Path) -> str:
 
 
 def write_learning_curve(logged: list[Logged], log_freq: int, file: Path) -> None:
-    """Draw loss and accuracy over training steps."""
+    """Draw loss and accuracies over training steps."""
+    steps = [(i + 1) * log_freq for i in range(len(logged))]
+    loss = {"all decisions": [entry.loss for entry in logged]}
+    accuracy = {
+        "pick decisions": [entry.pick_accuracy for entry in logged],
+        "place decisions": [entry.place_accuracy for entry in logged],
+    }
+    alt.hconcat(
+        _curves(steps, loss, "cross-entropy of the expert's choice (nats)"),
+        _curves(steps, accuracy, "share of choices that are the expert's"),
+        title="TTP, recipe ttp_quick, on dishwasher-train-v1",
+    ).save(str(file), scale_factor=2)
+
+
+def _curves(steps: list[int], curves: dict[str, list[float]], title: str) -> alt.Chart:
+    """One panel: curves by the decisions that they are about."""
     points = [
-        {"step": (i + 1) * log_freq, "value": value, "what": what}
-        for i, entry in enumerate(logged)
-        for what, value in (("loss", entry.loss), ("accuracy", entry.accuracy))
+        {"step": step, "value": value, "decisions": decisions}
+        for decisions, values in curves.items()
+        for step, value in zip(steps, values, strict=True)
     ]
-    curves = [
-        alt.Chart(alt.Data(values=[point for point in points if point["what"] == what]))
-        .mark_line(color=colour)
+    colours = alt.Scale(domain=list(COLOURS), range=list(COLOURS.values()))
+    return (
+        alt.Chart(alt.Data(values=points))
+        .mark_line()
         .encode(
             x=alt.X("step:Q", title="training step"),
             y=alt.Y("value:Q", title=title, scale=alt.Scale(zero=True)),
+            color=alt.Color("decisions:N", title=None, scale=colours),
         )
         .properties(width=380, height=240)
-        for what, title, colour in (
-            ("loss", "cross-entropy of the expert's choice (nats)", "#b5533c"),
-            ("accuracy", "share of choices that are the expert's", "#2f6f73"),
-        )
-    ]
-    alt.hconcat(*curves, title="TTP, recipe ttp_quick, on dishwasher-train-v1").save(
-        str(file), scale_factor=2
     )
 
 

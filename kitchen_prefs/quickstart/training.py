@@ -14,7 +14,7 @@ from tqdm import tqdm
 from kitchen_prefs.recipes import recipe_file
 
 PROGRESS = re.compile(r"Training: .*?(\d+)/(\d+) \[.*?\]")
-LOGGED = re.compile(r"step:\S+ .*?loss:(\S+) .*?accuracy:(\S+)")
+LOGGED = re.compile(r"step:\S+ .*?loss:(\S+) .*?pick_accuracy:(\S+) place_accuracy:(\S+)")
 
 # The loader works beside the training. Two threads that wait for each other on a core that a third
 # process wants took ten times as long.
@@ -27,11 +27,13 @@ class Logged:
 
     Attributes:
         loss: Cross-entropy of the expert's choices (nats).
-        accuracy: Share of decisions in which the policy's first choice is the expert's.
+        pick_accuracy: Share of pick decisions in which the highest score is the expert's choice.
+        place_accuracy: The same of place decisions.
     """
 
     loss: float
-    accuracy: float
+    pick_accuracy: float
+    place_accuracy: float
 
 
 def train(recipe: str, run: Path) -> Path:
@@ -63,7 +65,7 @@ def train(recipe: str, run: Path) -> Path:
 def read_log(run: Path) -> list[Logged]:
     """What lerobot-train logged, one entry each `log_freq` steps."""
     found = LOGGED.findall(run.with_suffix(".log").read_text())
-    return [Logged(float(loss), float(accuracy)) for loss, accuracy in found]
+    return [Logged(*map(float, numbers)) for numbers in found]
 
 
 def _is_finished(checkpoint: Path) -> bool:

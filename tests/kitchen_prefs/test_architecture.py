@@ -40,6 +40,7 @@ ORDER = (
     "selection",
     "evaluation",
     "quickstart",
+    "reproduction",
     "commands",  # of the scene and of the data sets: they stand on top of everything but the CLI
     "cli",
     "__init__",

@@ -12,16 +12,16 @@ from kitchen_prefs.evaluator import Summary
 from kitchen_prefs.metrics import METRICS, summarise
 from kitchen_prefs.quickstart import training
 from kitchen_prefs.quickstart.pictures import draw_episode
-from kitchen_prefs.quickstart.report import write_learning_curve, write_table
+from kitchen_prefs.quickstart.report import COLOURS, write_learning_curve, write_table
 from kitchen_prefs.quickstart.training import Logged, read_log
 from kitchen_prefs.recipes import recipe_file
 from kitchen_prefs.rollouts import roll_out
 
 LOG = """\
 INFO 2026-01-01 00:00:00 ot_train.py:600 step:50 smpl:2K ep:45 epch:0.08 loss:2.107 grdn:1.250 \
-lr:5.0e-04 updt_s:0.103 data_s:0.002 smp/s:310 accuracy:0.271
+lr:5.0e-04 updt_s:0.103 data_s:0.002 smp/s:310 pick_accuracy:0.271 place_accuracy:0.083
 INFO 2026-01-01 00:00:06 ot_train.py:600 step:100 smpl:3K ep:90 epch:0.16 loss:1.408 grdn:1.101 \
-lr:1.0e-03 updt_s:0.101 data_s:0.001 smp/s:314 accuracy:0.446
+lr:1.0e-03 updt_s:0.101 data_s:0.001 smp/s:314 pick_accuracy:0.446 place_accuracy:0.152
 """
 
 
@@ -34,8 +34,8 @@ def episodes():
 def test_the_log_of_lerobot_train_is_read(tmp_path):
     (tmp_path / "train.log").write_text(LOG)
     assert read_log(tmp_path / "train") == [
-        Logged(2.107, 0.271),
-        Logged(1.408, 0.446),
+        Logged(loss=2.107, pick_accuracy=0.271, place_accuracy=0.083),
+        Logged(loss=1.408, pick_accuracy=0.446, place_accuracy=0.152),
     ]
 
 
@@ -53,7 +53,7 @@ def test_what_lerobot_train_logs_beside_its_bar_is_kept(tmp_path):
     bar = "Training:   5%|▌         | 50/1000 [00:12<03:50,  4.12step/s]"
     script = f"print({bar!r} + {LOG.splitlines()[0]!r}); print({bar!r}, end='\\r'); print('end')"
     assert training._run([sys.executable, "-c", script], tmp_path / "train.log") == 0
-    assert read_log(tmp_path / "train") == [Logged(2.107, 0.271)]
+    assert read_log(tmp_path / "train") == [Logged(2.107, 0.271, 0.083)]
     assert (tmp_path / "train.log").read_text().splitlines()[-1] == "end"
 
 
@@ -75,13 +75,14 @@ def test_the_table_has_a_row_for_each_policy_and_split(tmp_path, episodes):
     assert written == metrics["PE"].mean
 
 
-def test_the_learning_curve_shows_a_line(tmp_path):
-    logged = [Logged(2 / (i + 1), i / 10) for i in range(10)]
+def test_the_learning_curve_shows_a_line_for_the_loss_and_each_accuracy(tmp_path):
+    logged = [Logged(2 / (i + 1), i / 10, i / 20) for i in range(10)]
     write_learning_curve(logged, 50, tmp_path / "curve.png")
     pixels = np.asarray(Image.open(tmp_path / "curve.png").convert("RGB")).astype(int)
-    reddish = (pixels[..., 0] - pixels[..., 1] > 60).sum()
     assert pixels.shape[1] > 600
-    assert reddish > 100
+    for colour in COLOURS.values():
+        red_green_blue = [int(colour[i : i + 2], 16) for i in (1, 3, 5)]
+        assert (np.abs(pixels - red_green_blue).sum(axis=-1) < 20).sum() > 500
 
 
 @pytest.mark.slow

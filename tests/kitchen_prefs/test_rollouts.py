@@ -66,6 +66,7 @@ STANDARD = Conditions(
     fingerprint="abc",
     track="standard",
     prompt_of="same",
+    prompts=1,
     expert_states=False,
     salt=0,
     data_version=1,

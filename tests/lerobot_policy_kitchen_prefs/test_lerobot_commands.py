@@ -2,10 +2,14 @@
 
 import json
 import os
+import re
 import subprocess
 import sys
 
+import numpy as np
 import pytest
+import torch
+from safetensors.torch import load_file
 
 from kitchen_prefs.datasets import make_dataset
 from kitchen_prefs.recipes import recipe_file
@@ -146,15 +150,38 @@ def test_lerobots_act_trains_on_the_same_data(home):
 
 
 @pytest.mark.slow
-def test_the_quickstarts_recipe_trains(home):
+def test_the_recipes_train(home):
+    for recipe in ("ttp_quick", "ttp_plus", "ttp_paper"):  # the second goes on from the first
+        log = run(
+            home,
+            TRAIN,
+            f"--config_path={recipe_file(recipe)}",
+            f"--dataset.repo_id=kitchen_prefs/{DATASET}",
+            f"--output_dir=outputs/{recipe}",
+            "--batch_size=4",
+            "--steps=2",
+            "--log_freq=1",
+        )
+        assert "step:2" in log
+        assert "pick_accuracy:" in log
+
+
+@pytest.mark.slow
+def test_mixed_precision_trains_weights_of_float32(home):
     log = run(
         home,
         TRAIN,
-        f"--config_path={recipe_file('ttp_quick')}",
+        "--policy.type=ttp",
+        "--policy.dtype=bfloat16",
         f"--dataset.repo_id=kitchen_prefs/{DATASET}",
-        f"--output_dir={home / 'quick'}",
+        f"--output_dir={home / 'mixed'}",
+        *SMALL_TTP,
         "--batch_size=4",
         "--steps=2",
-        "--log_freq=1",
+        *COMMON,
     )
-    assert "accuracy:" in log
+    losses = [float(loss) for loss in re.findall(r"loss:(\S+)", log)]
+    assert len(losses) == 2
+    assert np.isfinite(losses).all()
+    weights = load_file(home / "mixed/checkpoints/000002/pretrained_model/model.safetensors")
+    assert {weight.dtype for weight in weights.values()} == {torch.float32}

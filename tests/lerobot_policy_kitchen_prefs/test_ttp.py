@@ -8,9 +8,13 @@ from lerobot.datasets import LeRobotDataset
 
 from kitchen_prefs.datasets import make_dataset
 from kitchen_prefs.demonstrations import demonstrate, prompt_of
-from kitchen_prefs.instances import CAPACITY, CHOSEN, COLUMNS, IS_OBJECT, IS_PLACE, POSE
+from kitchen_prefs.instances import CAPACITY, CHOSEN, COLUMNS, DECISION, IS_OBJECT, IS_PLACE, POSE
 from kitchen_prefs.sessions import make_session, prompt_session
 from lerobot_policy_kitchen_prefs.ttp import TTPConfig, TTPPolicy
+from lerobot_policy_kitchen_prefs.ttp.configuration_ttp import ATTRIBUTES
+from lerobot_policy_kitchen_prefs.ttp.prompts import tokens_of_prompts
+from lerobot_policy_kitchen_prefs.ttp.sets import choosable, is_real
+from lerobot_policy_kitchen_prefs.ttp.situations import Situations
 
 NAME = "dishwasher-train-p2-d3-v1"  # two preferences, three demonstrations each
 TINY = {
@@ -23,7 +27,7 @@ TINY = {
     "device": "cpu",
 }
 PAPER: dict = {}
-# All that departs from the paper, as in the recipe ttp_quick.
+# All that departs from the paper, as in the recipe ttp_plus.
 COMPACT = {
     "prompt_tokens": "chosen",
     "use_slots": False,
@@ -34,8 +38,11 @@ COMPACT = {
     "situation_time": False,
     "time_encoding": "fourier",
     "geometric_attention": True,
-    "avoid_repeats": True,
+    "noise": 0.3,
+    "clashes": True,
+    "failures": True,
 }
+OTHER_ENCODINGS = {"pose_encoding": "linear", "extents_encoding": "label"}
 BOTH = pytest.mark.parametrize("settings", [PAPER, COMPACT], ids=["paper", "compact"])
 
 
@@ -59,10 +66,19 @@ def make_policy(dataset=None, **settings):
     return TTPPolicy(config, dataset_meta=dataset.meta if dataset else None)
 
 
-def frames(dataset, indices):
+def perturbed(policy, seed):
+    """The policy with other weights, so that nothing is zero or balanced as at the start."""
+    torch.manual_seed(seed)
+    with torch.no_grad():
+        for parameter in policy.parameters():
+            parameter.add_(0.2 * torch.randn_like(parameter))
+    return policy
+
+
+def frames(dataset, indices, *others):
     """A batch as LeRobot's loader and processors hand it to the policy."""
     items = [dataset[i] for i in indices]
-    kept = ("observation.instances", "action", "episode_index", "index")
+    kept = ("observation.instances", "action", "episode_index", "index", *others)
     return {key: torch.stack([item[key] for item in items]) for key in kept}
 
 
@@ -93,13 +109,23 @@ def test_training_learns_the_expert_s_choices(dataset, settings):
     assert losses[-1] < 0.7 * losses[0]
 
 
-@BOTH
+@pytest.mark.parametrize(
+    "settings", [PAPER, COMPACT, OTHER_ENCODINGS], ids=["paper", "compact", "other encodings"]
+)
 def test_every_parameter_is_trained(dataset, settings):
     policy = make_policy(dataset, **settings)
     loss, _ = policy.train()(frames(dataset, range(0, 200, 9)))
     loss.backward()
     idle = [n for n, p in policy.named_parameters() if p.grad is None or not p.grad.any()]
     assert not idle
+
+
+@BOTH
+def test_the_accuracies_of_picks_and_places_are_shares(dataset, settings):
+    policy = make_policy(dataset, **settings)
+    _, accuracies = policy(frames(dataset, range(0, 200, 9)))
+    assert list(accuracies) == ["pick_accuracy", "place_accuracy"]
+    assert all(0 <= accuracy < 1 for accuracy in accuracies.values())
 
 
 @BOTH
@@ -163,7 +189,7 @@ def test_what_is_chosen_depends_neither_on_row_order_nor_on_the_batch(settings):
 
 def test_the_prompt_is_read_once_an_episode():
     batch = observations([0, 1], 3)
-    policy = make_policy(**COMPACT | {"avoid_repeats": False})
+    policy = make_policy(**COMPACT | {"failures": False})
     first = policy.select_action(batch)
     del batch["observation.prompt"]
     assert torch.equal(policy.select_action(batch), first)
@@ -181,25 +207,128 @@ def test_the_paper_s_prompt_leaves_the_chosen_rows_out():
     assert torch.equal(policy.select_action(batch), actions)
 
 
-def test_no_choice_is_made_twice_in_the_same_set():
-    batch = observations([0], 0)
-    policy = make_policy(**COMPACT)
-    rows = batch["observation.instances"][0]
-    choices = int((rows[:, IS_OBJECT] > 0).sum())
-    actions = []
-    for decision in range(choices):
-        rows[rows[:, IS_OBJECT] > 0, 10] = decision  # time passes, nothing else changes
-        actions.append(tuple(policy.select_action(batch)[0].tolist()))
+def spied(policy):
+    """The policy, and a list of the situations that its network will be shown."""
+    shown, decide = [], policy.network.decide
+
+    def spy(situations, *others):
+        shown.append(situations)
+        return decide(situations, *others)
+
+    policy.network.decide = spy
+    return policy, shown
+
+
+def test_the_first_decision_of_an_episode_has_no_failures():
+    policy, shown = spied(make_policy(**COMPACT))
+    batch = observations(range(4))
+    for _ in range(2):
+        policy.select_action(batch)
+        policy.select_action(batch)
+        policy.reset()
+    assert [int(situations.failed.sum()) for situations in shown] == [0, 4, 0, 4]
+
+
+def test_what_was_chosen_in_vain_is_marked():
+    policy, shown = spied(make_policy(**COMPACT))
+    batch = observations(range(4))
+    actions = policy.select_action(batch)
+    policy.select_action(batch)
+    assert torch.equal(shown[1].sets[shown[1].failed][:, POSE], actions)
+
+
+def test_the_history_is_the_same_in_training_and_in_acting(dataset):
+    key, length = "observation.instances", 6
+    seconds = {key: [-2 / dataset.fps, -1 / dataset.fps, 0.0]}
+    with_past = LeRobotDataset(dataset.repo_id, root=dataset.root, delta_timestamps=seconds)
+    policy, shown = spied(make_policy(dataset, context_history=2).eval())
+    for frame in range(length):
+        policy(frames(with_past, [frame], f"{key}_is_pad"))
+    for frame in range(length):
+        prompt = observations([0])["observation.prompt"]
+        policy.select_action({key: dataset[frame][key][None], "observation.prompt": prompt})
+    histories = [situations.history[is_real(situations.history)] for situations in shown]
+    for frame in range(length):
+        in_training, in_acting = histories[frame], histories[length + frame]
+        assert torch.equal(in_training, in_acting)
+        assert set(in_acting[:, DECISION].tolist()) == set(range(max(0, frame - 2), frame))
+
+
+def test_a_network_can_learn_to_try_everything_before_it_repeats_itself():
+    policy, batch = make_policy(**COMPACT), observations([0])
+    choices = int((batch["observation.instances"][0, :, IS_OBJECT] > 0).sum())
+    with torch.no_grad():
+        policy.network.failures.gate.bias.fill_(100)
+    actions = [tuple(policy.select_action(batch)[0].tolist()) for _ in range(choices)]
     assert len(set(actions)) == choices
+    policy.reset()
     assert tuple(policy.select_action(batch)[0].tolist()) == actions[0]
+
+
+def scores_of(policy, batch):
+    """The network's scores, (B, N), where every other row has failed before."""
+    sets = batch["observation.instances"]
+    failed = choosable(sets) & (torch.arange(sets.shape[1]) % 2 == 0)
+    tokens = tokens_of_prompts(batch["observation.prompt"], policy.config.prompt_tokens)
+    preference = policy.network.encode(*tokens)
+    situations = Situations(sets, failed, sets[:, :0])
+    return policy.network.decide(situations, preference, torch.arange(len(sets)))
+
+
+@BOTH
+@pytest.mark.parametrize("seed", range(5))
+def test_padding_changes_no_score(settings, seed):
+    policy = perturbed(make_policy(**settings), seed)
+    for decision in range(0, 20, 2):
+        batch = observations([0], decision)
+        real = is_real(batch["observation.instances"])[0]
+        padded = scores_of(policy, batch)[:, real]
+        batch["observation.instances"] = batch["observation.instances"][:, real]
+        assert torch.allclose(scores_of(policy, batch), padded, atol=1e-3)
+
+
+@BOTH
+@pytest.mark.parametrize("attribute", ["pose", "category", "time"])
+def test_a_hidden_attribute_changes_no_score(settings, attribute):
+    settings = settings | {"clashes": False, "situation_time": True}
+    policy, sees_all = make_policy(**settings, hidden=[attribute]), make_policy(**settings)
+    batch = observations([0, 1], 3)
+    changed = {key: rows.clone() for key, rows in batch.items()}
+    for rows in changed.values():
+        rows[..., ATTRIBUTES[attribute]] += 1.5 * is_real(rows)[..., None]
+    real = is_real(batch["observation.instances"])
+    before, after = (scores_of(policy, b)[real] for b in (batch, changed))
+    assert torch.equal(before, after)
+    before, after = (scores_of(sees_all, b)[real] for b in (batch, changed))
+    assert not torch.allclose(before, after)
+
+
+def with_prompts_of(batch, order):
+    """The batch, each prompted with several demonstrations, one below the other."""
+    prompts = torch.cat([batch["observation.prompt"][others] for others in order], dim=1)
+    return batch | {"observation.prompt": prompts}
+
+
+@BOTH
+def test_the_order_of_several_prompts_does_not_matter(settings):
+    batch = observations(range(4), 3)
+    actions = []
+    for order in (([0, 1, 2, 3], [1, 2, 3, 0]), ([1, 2, 3, 0], [0, 1, 2, 3])):
+        actions.append(make_policy(**settings).select_action(with_prompts_of(batch, order)))
+    assert torch.equal(*actions)
+
+
+@BOTH
+def test_the_same_prompt_twice_says_what_it_says_once(settings):
+    batch = observations(range(4), 3)
+    twice = with_prompts_of(batch, ([0, 1, 2, 3], [0, 1, 2, 3]))
+    once, again = (make_policy(**settings).select_action(b) for b in (batch, twice))
+    assert torch.equal(once, again)
 
 
 @BOTH
 def test_a_checkpoint_acts_like_the_policy_that_saved_it(tmp_path, settings):
-    policy = make_policy(**settings)
-    with torch.no_grad():
-        for parameter in policy.parameters():
-            parameter.add_(0.05 * torch.randn_like(parameter))
+    policy = perturbed(make_policy(**settings), seed=0)
     policy.save_pretrained(tmp_path)
     batch = observations(range(5), 3)
     loaded = TTPPolicy.from_pretrained(tmp_path)
@@ -236,7 +365,17 @@ def test_features_that_do_not_fit_are_named(inputs, output):
 
 
 @pytest.mark.parametrize(
-    "settings", [{"pointer": "rows"}, {"prompt_tokens": "all"}, {"n_heads": 3}, {"rounds": 0}]
+    "settings",
+    [
+        {"pointer": "rows"},
+        {"prompt_tokens": "all"},
+        {"dtype": "float16"},
+        {"n_heads": 3},
+        {"rounds": 0},
+        {"noise": 1.5},
+        {"context_history": -1},
+        {"hidden": ["colour"]},
+    ],
 )
 def test_impossible_settings_are_refused(settings):
     with pytest.raises(ValueError, match=next(iter(settings)).removeprefix("n_")):

@@ -1,4 +1,4 @@
-"""TTP's parts: prompts, relabelling, attention, schedule."""
+"""TTP's parts: prompts, categories, relabelling, noisy sight, attention, schedule."""
 
 import numpy as np
 import pytest
@@ -7,57 +7,47 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from kitchen_prefs.demonstrations import demonstrate, prompt_of
-from kitchen_prefs.instances import CHOSEN, COLUMNS, DECISION, EXTENTS, IS_OBJECT, IS_PLACE
+from kitchen_prefs.instances import (
+    CHOSEN,
+    COLUMNS,
+    DECISION,
+    EXTENTS,
+    IS_OBJECT,
+    IS_PLACE,
+    POSITION,
+    QUATERNION,
+)
+from kitchen_prefs.observations import EXTENT_NOISE, POSITION_NOISE
 from kitchen_prefs.scene.layout import COUNTER_HEIGHT
-from kitchen_prefs.sessions import make_session
 from lerobot_policy_kitchen_prefs.ttp.attention import Attention, GeometricScores, Tokens
-from lerobot_policy_kitchen_prefs.ttp.demonstrations import Demonstrations
-from lerobot_policy_kitchen_prefs.ttp.pairing import make_pairs
+from lerobot_policy_kitchen_prefs.ttp.perception import see_noisily
 from lerobot_policy_kitchen_prefs.ttp.prompts import tokens_of_prompts
-from lerobot_policy_kitchen_prefs.ttp.relabelling import Relabelling
+from lerobot_policy_kitchen_prefs.ttp.relabelling import relabel
 from lerobot_policy_kitchen_prefs.ttp.scheduler import ExponentialDecaySchedulerConfig
 from lerobot_policy_kitchen_prefs.ttp.sets import chosen_rows, is_real
 
 HEIGHT, ELEVATION = 2, 5  # columns
-SESSIONS = [make_session("val", index) for index in (0, 1, 10, 11)]
+FIXTURES = 3  # the door and two racks
+SEEDS = st.integers(0, 10_000)
 
 
-@pytest.fixture(scope="module")
-def demonstrations():
-    rows = [prompt_of(session) for session in SESSIONS]
-    rows = [prompt[prompt[:, IS_OBJECT] + prompt[:, IS_PLACE] > 0] for prompt in rows]
-    labels = np.array([session.label for session in SESSIONS])
-    return Demonstrations(np.concatenate(rows), np.array([len(r) for r in rows]), labels)
-
-
-@pytest.fixture(scope="module")
-def pairs(demonstrations):
-    """All decisions of the first two sessions, each pick with three prompts."""
-    parts = [demonstrate(session) for session in SESSIONS[:2]]
-    sets = torch.from_numpy(np.concatenate([part.instances for part in parts]))
-    actions = torch.from_numpy(np.concatenate([part.action for part in parts]))
-    episodes = np.repeat([0, 1], [len(part.action) for part in parts])
-    generator = np.random.default_rng(0)
-    return make_pairs(sets, chosen_rows(sets, actions), episodes, demonstrations, 3, generator)
-
-
-def test_the_targets_are_the_rows_that_the_expert_chose():
-    for session in SESSIONS:
+def test_the_targets_are_the_rows_that_the_expert_chose(sessions):
+    for session in sessions:
         demonstration = demonstrate(session)
         sets, actions = map(torch.from_numpy, (demonstration.instances, demonstration.action))
         assert chosen_rows(sets, actions).tolist() == demonstration.chosen_index.tolist()
 
 
-def test_compact_prompts_are_the_chosen_rows_in_order():
-    prompts = torch.from_numpy(np.stack([prompt_of(session) for session in SESSIONS]))
+def test_compact_prompts_are_the_chosen_rows_in_order(sessions):
+    prompts = torch.from_numpy(np.stack([prompt_of(session) for session in sessions]))
     tokens, mask = tokens_of_prompts(prompts, "chosen")
     for prompt, rows, real in zip(prompts, tokens, mask, strict=True):
         assert torch.equal(rows[real], prompt[prompt[:, CHOSEN] > 0][:, :COLUMNS])
         assert (rows[real, DECISION] == torch.arange(int(real.sum()))).all()
 
 
-def test_the_paper_s_prompts_have_an_act_token_after_each_decision():
-    prompts = torch.from_numpy(np.stack([prompt_of(session) for session in SESSIONS]))
+def test_the_paper_s_prompts_have_an_act_token_after_each_decision(sessions):
+    prompts = torch.from_numpy(np.stack([prompt_of(session) for session in sessions]))
     tokens, mask = tokens_of_prompts(prompts, "states")
     for prompt, rows, real in zip(prompts, tokens, mask, strict=True):
         decisions = int(prompt[:, CHOSEN].sum())
@@ -70,7 +60,7 @@ def test_the_paper_s_prompts_have_an_act_token_after_each_decision():
         assert torch.equal(rows[real & ~is_act], prompt[is_real(prompt)][:, :COLUMNS])
 
 
-def test_each_situation_goes_with_a_prompt_of_its_preference(pairs, demonstrations):
+def test_each_situation_goes_with_a_prompt_of_its_preference(pairs, demonstrations, sessions):
     of_prompt = [
         next(
             label
@@ -79,7 +69,7 @@ def test_each_situation_goes_with_a_prompt_of_its_preference(pairs, demonstratio
         )
         for prompt in map(_trimmed, pairs.prompts)
     ]
-    assert {of_prompt[g] for g in pairs.prompt_of.tolist()} == {SESSIONS[0].label}
+    assert {of_prompt[g] for g in pairs.prompt_of.tolist()} == {sessions[0].label}
     is_place = (pairs.sets[..., IS_PLACE] > 0).any(dim=1)
     assert (pairs.prompt_of[is_place] == 0).all()
     assert pairs.prompt_of[~is_place].bincount().unique().numel() == 1
@@ -89,13 +79,20 @@ def _trimmed(prompt):
     return prompt[: int(is_real(prompt).sum())]
 
 
+def test_all_dishes_and_places_have_a_category_and_nothing_else_has(pairs, categories):
+    category, is_dish = categories.find(pairs.sets)  # (S, N)
+    assert len(categories) == 7
+    assert torch.equal(categories.extents[category[is_dish]], pairs.sets[is_dish][:, EXTENTS])
+    assert ((is_real(pairs.sets) & ~is_dish).sum(dim=1) == FIXTURES).all()
+    assert not (is_dish & ~is_real(pairs.sets)).any()
+
+
 @settings(max_examples=10, deadline=None)
-@given(seed=st.integers(0, 10_000))
-def test_relabelling_permutes_extents_and_sets_dishes_on_the_counter(pairs, demonstrations, seed):
-    relabelled = Relabelling(demonstrations)(pairs, np.random.default_rng(seed))
+@given(seed=SEEDS)
+def test_relabelling_permutes_extents_and_sets_dishes_on_the_counter(pairs, categories, seed):
+    relabelled = relabel(pairs, categories, np.random.default_rng(seed))
     for before, after in ((pairs.prompts, relabelled.prompts), (pairs.sets, relabelled.sets)):
-        changed = {column for column in range(before.shape[-1]) if column in (0, 1, 2, ELEVATION)}
-        kept = [column for column in range(before.shape[-1]) if column not in changed]
+        kept = [c for c in range(before.shape[-1]) if c not in (0, 1, 2, ELEVATION)]
         assert torch.equal(before[..., kept], after[..., kept])
         for old, new in zip(before[..., EXTENTS], after[..., EXTENTS], strict=True):
             pairs_of_extents = torch.cat([old, new], dim=-1).unique(dim=0)
@@ -110,8 +107,8 @@ def _stands_on_counter(rows):
     return ((bottom - COUNTER_HEIGHT).abs() < 1e-5) & (rows[..., IS_OBJECT] > 0)
 
 
-def test_prompt_and_situation_are_relabelled_alike(pairs, demonstrations):
-    relabelled = Relabelling(demonstrations)(pairs, np.random.default_rng(0))
+def test_prompt_and_situation_are_relabelled_alike(pairs, categories):
+    relabelled = relabel(pairs, categories, np.random.default_rng(0))
     seen = [{} for _ in pairs.prompts]
     is_pick = ~(pairs.sets[..., IS_PLACE] > 0).any(dim=1)
     for g, sets, new in (
@@ -127,6 +124,50 @@ def test_prompt_and_situation_are_relabelled_alike(pairs, demonstrations):
             category = tuple(new_row[EXTENTS])
             assert seen[g].setdefault(tuple(old_row[EXTENTS]), category) == category
     assert len({tuple(sorted(mapping.items())) for mapping in seen}) == len(seen)
+
+
+@settings(max_examples=10, deadline=None)
+@given(seed=SEEDS)
+def test_noisy_sight_errs_about_dishes_alone(pairs, categories, seed):
+    noisy = see_noisily(pairs, 1.0, categories, np.random.default_rng(seed))
+    assert noisy.prompts is pairs.prompts
+    assert noisy.targets is pairs.targets
+    is_dish = categories.find(pairs.sets)[1]  # (S, N)
+    is_place = pairs.sets[..., IS_PLACE] > 0
+    assert torch.equal(noisy.sets[~is_dish], pairs.sets[~is_dish])  # door, racks and padding
+    assert torch.equal(noisy.sets[is_place][:, POSITION], pairs.sets[is_place][:, POSITION])
+    kept = [*range(QUATERNION.start, COLUMNS)]
+    assert torch.equal(noisy.sets[..., kept], pairs.sets[..., kept])
+    changed = noisy.sets != pairs.sets
+    assert changed[is_dish][:, EXTENTS].float().mean() > 0.99
+    assert changed[is_dish & ~is_place][:, POSITION].float().mean() > 0.99
+
+
+def test_noisy_sight_errs_as_much_as_the_split_noisy(pairs, categories):
+    noisy = see_noisily(pairs, 1.0, categories, np.random.default_rng(0))
+    dishes = categories.find(pairs.sets)[1] & (pairs.sets[..., IS_OBJECT] > 0)
+    before, after = pairs.sets[dishes], noisy.sets[dishes]
+    of_extents = after[:, EXTENTS] / before[:, EXTENTS] - 1
+    of_position = after[:, POSITION] - before[:, POSITION]
+    assert of_extents.std().item() == pytest.approx(EXTENT_NOISE, rel=0.1)
+    assert of_position.std().item() == pytest.approx(POSITION_NOISE, rel=0.1)
+
+
+def test_the_places_for_a_dish_share_one_error(pairs, categories):
+    noisy = see_noisily(pairs, 1.0, categories, np.random.default_rng(0))
+    for sets in noisy.sets[(pairs.sets[..., IS_PLACE] > 0).any(dim=1)]:
+        assert len(sets[sets[:, IS_PLACE] > 0][:, EXTENTS].unique(dim=0)) == 1
+
+
+@pytest.mark.parametrize("share", [0.0, 0.3, 1.0])
+def test_a_share_of_the_situations_is_seen_noisily(pairs, categories, share):
+    generator = np.random.default_rng(0)
+    has_dishes = categories.find(pairs.sets)[1].any(dim=1)
+    found = []
+    for _ in range(20):
+        noisy = see_noisily(pairs, share, categories, generator)
+        found.append((noisy.sets != pairs.sets)[has_dishes].flatten(1).any(dim=1))
+    assert torch.stack(found).float().mean().item() == pytest.approx(share, abs=0.05 * share)
 
 
 def test_geometric_scores_are_squared_distances():

@@ -8,11 +8,13 @@ from lerobot.optim import SGDConfig
 from lerobot.utils.constants import ACTION
 
 from kitchen_prefs.environment_config import OBS_INSTANCES
-from kitchen_prefs.instances import COLUMNS
+from kitchen_prefs.instances import COLUMNS, DECISION, EXTENTS, POSE
 
 from .scheduler import ExponentialDecaySchedulerConfig
 
 POSE_SIZE = 7  # position and quaternion
+# The columns of each attribute.
+ATTRIBUTES = {"pose": POSE, "category": EXTENTS, "time": slice(DECISION, DECISION + 1)}
 
 
 @PreTrainedConfig.register_subclass("ttp")
@@ -26,6 +28,7 @@ class TTPConfig(PreTrainedConfig):
             some forty tokens instead of a thousand.
         relabel: Whether training permutes the categories, in prompt and situation together.
         rounds: With how many prompts each pick decision of a batch is paired.
+        noise: The share of training situations that are seen as noisily as on the split `noisy`.
         dim_pose: Size of the pose embedding.
         dim_extents: Size of the category embedding.
         dim_time: Size of the time embedding.
@@ -37,6 +40,13 @@ class TTPConfig(PreTrainedConfig):
         use_slots: Whether slot attention reduces the encoded prompt to `num_slots` tokens.
         num_slots: Length H of the preference embedding.
         slot_iterations: Rounds of slot attention.
+        context_history: The number k of earlier decisions whose objects are seen beside those of
+            the present one (paper, appendix).
+        hidden: Attributes of instances that the network does not see, of "pose", "category" and
+            "time" (paper, table "Attribute Ablations").
+        pose_encoding: "fourier" expands a pose into waves (the paper); "linear" takes its numbers.
+        extents_encoding: "fourier" expands the extents into waves (the paper); "linear" takes their
+            numbers; "label" only which category they are nearest to.
         time_encoding: "table" looks the decision's index up (the paper); "fourier" expands it, so
             that an index that training never saw has an embedding too.
         situation_time: Whether the situation's rows tell the decision's index, as the paper's do.
@@ -44,7 +54,9 @@ class TTPConfig(PreTrainedConfig):
         pointer: "inputs" compares the ACT token's output with the embeddings of the rows (the
             paper); "outputs" with learned projections of the decoder's outputs at the rows.
         geometric_attention: Whether attention also sees how alike and how near instances are.
-        avoid_repeats: Whether the policy never makes the same choice twice in the same set.
+        clashes: Whether a small network judges, pair by pair, what stands in the way of a place.
+        failures: Whether the network sees which rows it has just chosen in vain.
+        dtype: "float32", or "bfloat16" for LeRobot's mixed precision in training.
     """
 
     normalization_mapping: dict[str, NormalizationMode] = field(
@@ -57,6 +69,7 @@ class TTPConfig(PreTrainedConfig):
     prompt_tokens: str = "states"
     relabel: bool = False
     rounds: int = 1
+    noise: float = 0.0
 
     # Architecture: 128 + 64 + 32 + 32 = 256 (paper, appendix "Training").
     dim_pose: int = 128
@@ -71,13 +84,21 @@ class TTPConfig(PreTrainedConfig):
     num_slots: int = 50
     slot_iterations: int = 3
 
-    # Departures from the paper, off by default.
+    # The encoders of attributes, as the paper varies them.
+    context_history: int = 0
+    hidden: list[str] = field(default_factory=list)
+    pose_encoding: str = "fourier"
+    extents_encoding: str = "fourier"
     time_encoding: str = "table"
+
+    # Departures from the paper, off by default.
     situation_time: bool = True
     pre_norm: bool = False
     pointer: str = "inputs"
     geometric_attention: bool = False
-    avoid_repeats: bool = False
+    clashes: bool = False
+    failures: bool = False
+    dtype: str = "float32"
 
     # Training preset (paper, appendix "Training"). The paper names no gradient clipping;
     # LeRobot clips at a norm of 10 unless the optimiser is given otherwise.
@@ -90,13 +111,33 @@ class TTPConfig(PreTrainedConfig):
         super().__post_init__()
         for name, choices in (
             ("prompt_tokens", ("states", "chosen")),
+            ("pose_encoding", ("fourier", "linear")),
+            ("extents_encoding", ("fourier", "linear", "label")),
             ("time_encoding", ("table", "fourier")),
             ("pointer", ("inputs", "outputs")),
+            ("dtype", ("float32", "bfloat16")),
         ):
             if getattr(self, name) not in choices:
                 raise ValueError(f"{name} is {getattr(self, name)!r}; it must be one of {choices}.")
+        unknown = sorted(set(self.hidden) - set(ATTRIBUTES))
+        if unknown:
+            raise ValueError(f"hidden names {unknown[0]!r}; attributes are {tuple(ATTRIBUTES)}.")
+        if self.dtype == "bfloat16" and (self.clashes or self.geometric_attention):
+            raise ValueError(
+                "clashes and geometric_attention compare millimetres, which bfloat16 rounds away; "
+                "leave dtype at float32."
+            )
+        if self.context_history < 0:
+            raise ValueError("context_history counts decisions; it is at least 0.")
+        if self.context_history and (self.relabel or self.noise or not self.situation_time):
+            raise ValueError(
+                "With a context_history, relabel and noise must be off, as they change the present "
+                "alone, and situation_time on, as it tells the past from the present."
+            )
         if self.dim % self.n_heads:
             raise ValueError(f"{self.n_heads} heads cannot share {self.dim} dimensions equally.")
+        if not 0 <= self.noise <= 1:
+            raise ValueError(f"noise is a share, from 0 to 1, not {self.noise}.")
         if self.rounds < 1:
             raise ValueError("rounds counts the prompts of a pick decision; it is at least 1.")
 
@@ -128,9 +169,9 @@ class TTPConfig(PreTrainedConfig):
         _check(ACTION, self.output_features, lambda shape: shape == (POSE_SIZE,))
 
     @property
-    def observation_delta_indices(self) -> None:
-        """TTP looks at one decision."""
-        return None
+    def observation_delta_indices(self) -> list[int] | None:
+        """TTP looks at one decision, or at `context_history` more."""
+        return list(range(-self.context_history, 1)) if self.context_history else None
 
     @property
     def action_delta_indices(self) -> None:

@@ -5,10 +5,13 @@ e_i = time || category || pose || marker
 
 from math import log, pi
 
+import numpy as np
 import torch
 from torch import Tensor, nn
 
 from kitchen_prefs.instances import DECISION, EXTENTS, IS_OBJECT, IS_PLACE, POSITION, QUATERNION
+from kitchen_prefs.observations import DOOR_ROWS, RACK_ROWS
+from kitchen_prefs.observations import EXTENTS as DISH_EXTENTS
 
 from .configuration_ttp import TTPConfig
 
@@ -30,13 +33,9 @@ class InstanceEncoder(nn.Module):
     def __init__(self, config: TTPConfig) -> None:
         """Make the four encoders, of the sizes that the configuration gives them."""
         super().__init__()
-        self.time = (
-            TimeTable(config.dim_time)
-            if config.time_encoding == "table"
-            else TimeWaves(config.dim_time)
-        )
-        self.extents = ExtentsEncoder(config.dim_extents)
-        self.pose = PoseEncoder(config.dim_pose)
+        self.time = TIME_ENCODERS[config.time_encoding](config.dim_time)
+        self.extents = EXTENTS_ENCODERS[config.extents_encoding](config.dim_extents)
+        self.pose = POSE_ENCODERS[config.pose_encoding](config.dim_pose)
         self.marker = MarkerEncoder(config.dim_marker)
 
     def forward(self, rows: Tensor) -> Tensor:
@@ -85,6 +84,19 @@ class PoseEncoder(nn.Module):
         return self.linear(torch.cat(features, dim=-1))
 
 
+class PoseNumbers(nn.Module):
+    """The numbers of position and quaternion, and one linear layer (the paper's other encoding)."""
+
+    def __init__(self, dim: int) -> None:
+        """Make an encoder of size `dim`."""
+        super().__init__()
+        self.linear = nn.Linear(7, dim)
+
+    def forward(self, position: Tensor, quaternion: Tensor) -> Tensor:
+        """Embed positions (..., 3) and quaternions (..., 4) as (..., dim)."""
+        return self.linear(torch.cat([position, quaternion], dim=-1))
+
+
 class ExtentsEncoder(nn.Module):
     """Phi_c: an MLP on Fourier features of the extents, the best of the paper's ablation."""
 
@@ -101,6 +113,38 @@ class ExtentsEncoder(nn.Module):
     def forward(self, extents: Tensor) -> Tensor:
         """Embed extents (..., 3) as (..., dim)."""
         return self.layers(extents)
+
+
+class ExtentsNumbers(nn.Module):
+    """The same MLP on the extents in m as they are."""
+
+    def __init__(self, dim: int) -> None:
+        """Make an encoder of size `dim`."""
+        super().__init__()
+        self.layers = nn.Sequential(nn.Linear(3, dim), nn.GELU(), nn.Linear(dim, dim))
+
+    def forward(self, extents: Tensor) -> Tensor:
+        """Embed extents (..., 3) as (..., dim)."""
+        return self.layers(extents)
+
+
+class CategoryTable(nn.Module):
+    """A learned embedding for each category, which says nothing of its size (the paper's other)."""
+
+    extents: Tensor
+
+    def __init__(self, dim: int) -> None:
+        """Make a table of size `dim` for the dishes, the door, the racks and the ACT token."""
+        super().__init__()
+        others = [DOOR_ROWS[0][EXTENTS], RACK_ROWS["top"][0][EXTENTS], np.zeros(3)]
+        known = torch.tensor(np.stack([*DISH_EXTENTS, *others]), dtype=torch.float32)
+        self.register_buffer("extents", known, persistent=False)
+        self.table = nn.Embedding(len(known), dim)
+
+    def forward(self, extents: Tensor) -> Tensor:
+        """Embed extents (..., 3) by the nearest category's row, (..., dim)."""
+        difference = (extents[..., None, :] - self.extents).abs().sum(dim=-1)  # (..., C)
+        return self.table(difference.argmin(dim=-1))
 
 
 class TimeTable(nn.Module):
@@ -144,3 +188,8 @@ class MarkerEncoder(nn.Module):
     def forward(self, is_object: Tensor, is_place: Tensor) -> Tensor:
         """Embed two markers (...) as (..., dim)."""
         return self.table((is_object + 2 * is_place).long())
+
+
+TIME_ENCODERS = {"table": TimeTable, "fourier": TimeWaves}
+EXTENTS_ENCODERS = {"fourier": ExtentsEncoder, "linear": ExtentsNumbers, "label": CategoryTable}
+POSE_ENCODERS = {"fourier": PoseEncoder, "linear": PoseNumbers}

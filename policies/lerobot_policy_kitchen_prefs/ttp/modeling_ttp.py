@@ -11,17 +11,21 @@ from lerobot.utils.constants import ACTION
 from torch import Tensor, nn
 
 from kitchen_prefs.environment_config import OBS_INSTANCES, OBS_PROMPT
-from kitchen_prefs.instances import POSE
+from kitchen_prefs.instances import POSE, PROMPT_CAPACITY
 
 from .attention import Tokens
+from .categories import Categories
 from .configuration_ttp import TTPConfig
 from .demonstrations import Demonstrations
+from .failures import Failures, invent_failures
+from .history import History, objects_of
 from .network import TTPNetwork
 from .pairing import Pairs, make_pairs
+from .perception import see_noisily
 from .prompts import tokens_of_prompts
-from .relabelling import Relabelling
-from .repeats import Repeats
-from .sets import choosable, chosen_rows, is_place_decision, is_real
+from .relabelling import relabel
+from .sets import choosable, chosen_rows, is_place_decision, of_like_length
+from .situations import Situations
 
 
 class TTPPolicy(PreTrainedPolicy):
@@ -52,7 +56,7 @@ class TTPPolicy(PreTrainedPolicy):
         if dataset_meta is not None:
             chosen_only = config.prompt_tokens == "chosen"
             self.demonstrations = Demonstrations.read(dataset_meta, chosen_only)
-            self.relabelling = Relabelling(self.demonstrations)
+            self.categories = Categories.of(self.demonstrations)
         self.reset()
 
     def get_optim_params(self) -> list[nn.Parameter]:
@@ -68,23 +72,41 @@ class TTPPolicy(PreTrainedPolicy):
             batch: LeRobot's batch of B frames: the sets, the actions and the episodes.
 
         Returns:
-            The loss, and the share of pairs in which the highest score is the expert's choice.
+            The loss, and the shares of pick and of place decisions in which the highest score is
+            the expert's choice.
 
         Raises:
             ValueError: If the policy was made without a data set, or an action is no row's pose.
         """
-        pairs = self._pair(batch)
+        pairs, situations = self.pair(batch)
         preference = self._encode(pairs.prompts)
         is_place = is_place_decision(pairs.sets)  # (S,)
-        losses, correct = [], []
-        for kind in (~is_place, is_place):  # apart, because place sets are several times as long
-            if kind.any():
-                scores = self._score(pairs.sets[kind], preference, pairs.prompt_of[kind])  # (K, N)
-                losses.append(F.cross_entropy(scores, pairs.targets[kind], reduction="none"))
-                correct.append(scores.argmax(dim=1) == pairs.targets[kind])
-        return torch.cat(losses).mean(), {"accuracy": torch.cat(correct).float().mean().item()}
+        losses = pairs.sets.new_zeros(len(is_place))  # (S,)
+        correct = torch.zeros_like(is_place)  # (S,)
+        for part in of_like_length(pairs.sets):
+            targets = pairs.targets[part]
+            scores = self._score(situations.select(part), preference, pairs.prompt_of[part])
+            losses[part] = F.cross_entropy(scores, targets, reduction="none")
+            correct[part] = scores.argmax(dim=1) == targets
+        kinds = {"pick": correct[~is_place], "place": correct[is_place]}
+        return losses.mean(), {
+            f"{name}_accuracy": hits.float().mean().item()
+            for name, hits in kinds.items()
+            if len(hits)
+        }
 
-    def _pair(self, batch: dict[str, Tensor]) -> Pairs:
+    def pair(self, batch: dict[str, Tensor]) -> tuple[Pairs, Situations]:
+        """Pair a batch with prompts; in training, augment the pairs.
+
+        Args:
+            batch: What `forward` takes.
+
+        Returns:
+            The pairs, and their situations with what is known of the decisions before.
+
+        Raises:
+            ValueError: What `forward` raises.
+        """
         if self.demonstrations is None:
             raise ValueError(
                 "TTP takes its prompts from the data set that it trains on; make it with "
@@ -92,24 +114,31 @@ class TTPPolicy(PreTrainedPolicy):
             )
         # The draws depend on the batch alone, so that a resumed run repeats an unbroken one.
         generator = np.random.default_rng(batch["index"].cpu().numpy())
+        sets, history = _now_and_before(batch)  # (B, N, 13), (B, H, 13)
         pairs = make_pairs(
-            sets=batch[OBS_INSTANCES],
-            targets=chosen_rows(batch[OBS_INSTANCES], batch[ACTION]),
+            sets=sets,
+            targets=chosen_rows(sets, batch[ACTION]),
             episodes=batch["episode_index"].cpu().numpy(),
             demonstrations=self.demonstrations,
             rounds=self.config.rounds if self.training else 1,
             generator=generator,
         )
-        if self.config.relabel and self.training:
-            return self.relabelling(pairs, generator)
-        return pairs
+        failed = torch.zeros(pairs.sets.shape[:2], dtype=torch.bool, device=pairs.sets.device)
+        if self.training and self.config.relabel:
+            pairs = relabel(pairs, self.categories, generator)
+        if self.training and self.config.failures:
+            failed = invent_failures(pairs, self.categories, generator)
+        if self.training and self.config.noise:
+            pairs = see_noisily(pairs, self.config.noise, self.categories, generator)
+        return pairs, Situations(pairs.sets, failed, history[pairs.sample])
 
     # Acting ----------------------------------------------------------------------------------
 
     def reset(self) -> None:
-        """Forget the prompt and the choices: other episodes begin."""
+        """Forget the prompt and the past: other episodes begin."""
         self._preference: Tokens | None = None
-        self._repeats = Repeats()
+        self._failures = Failures()
+        self._history = History(self.config.context_history)
 
     @torch.no_grad()
     def select_action(self, batch: dict[str, Tensor], **_: Any) -> Tensor:
@@ -117,7 +146,8 @@ class TTPPolicy(PreTrainedPolicy):
 
         Args:
             batch: The observations of B environments. The prompts are read on the first call after
-                `reset`, and encoded once.
+                `reset`, and encoded once. Of several for an episode each gives its opinion; the
+                mean of their log-probabilities decides.
             **_: What else LeRobot offers to policies.
 
         Returns:
@@ -129,13 +159,16 @@ class TTPPolicy(PreTrainedPolicy):
         self.eval()
         sets = _observed(batch, OBS_INSTANCES)  # (B, N, 13)
         if self._preference is None:
-            self._preference = self._encode(_observed(batch, OBS_PROMPT))
+            self._preference = self._encode(one_by_one(_observed(batch, OBS_PROMPT)))
+        prompt_of = torch.arange(len(self._preference.features), device=sets.device)
         environments = torch.arange(len(sets), device=sets.device)
-        scores = self._score(sets, self._preference, environments)  # (B, M)
-        poses = sets[:, : scores.shape[1], POSE]  # (B, M, 7)
-        if self.config.avoid_repeats:
-            return self._repeats.choose(sets, poses, scores)
-        return poses[environments, scores.argmax(dim=1)]
+        asked = environments.repeat_interleave(len(prompt_of) // len(sets))  # (B V,)
+        situations = Situations(sets, self._failures.find(sets), self._history.recall(sets))
+        scores = self._score(situations.select(asked), self._preference, prompt_of)  # (B V, M)
+        opinions = scores.log_softmax(dim=1).unflatten(0, (len(sets), -1))  # (B, V, M)
+        choices = sets[environments, opinions.mean(dim=1).argmax(dim=1)]  # (B, 13)
+        self._failures.remember(choices)
+        return choices[:, POSE]
 
     def predict_action_chunk(self, batch: dict[str, Tensor], **_: Any) -> Tensor:
         """The action as a chunk of one, (B, 1, 7)."""
@@ -147,13 +180,36 @@ class TTPPolicy(PreTrainedPolicy):
         """Encode demonstrations, (G, P, 14)."""
         return self.network.encode(*tokens_of_prompts(prompts, self.config.prompt_tokens))
 
-    def _score(self, sets: Tensor, preference: Tokens, prompt_of: Tensor) -> Tensor:
-        """Score the rows of sets, (B, N, 13), cut to the longest of them, (B, M)."""
-        mask = is_real(sets)  # (B, N)
-        longest = int(mask.sum(dim=1).max())  # padding stands at the end
-        sets, mask = sets[:, :longest], mask[:, :longest]
-        scores = self.network.decide(sets, mask, preference, prompt_of)
-        return scores.masked_fill(~choosable(sets), -torch.inf)
+    def _score(self, situations: Situations, preference: Tokens, prompt_of: Tensor) -> Tensor:
+        """Score the rows of B sets, cut to the M rows of the longest of them, (B, M)."""
+        situations = situations.trimmed()
+        scores = self.network.decide(situations, preference, prompt_of)
+        return scores.masked_fill(~choosable(situations.sets), -torch.inf)
+
+
+def _now_and_before(batch: dict[str, Tensor]) -> tuple[Tensor, Tensor]:
+    """The sets of a batch, (B, N, 13), and the objects seen before, (B, H, 13)."""
+    sets = batch[OBS_INSTANCES]  # (B, N, 13), or (B, k + 1, N, 13) with a context history
+    if sets.ndim == 3:
+        return sets, sets[:, :0]
+    # LeRobot repeats the first frame of an episode where there is none before it.
+    is_there = ~batch[f"{OBS_INSTANCES}_is_pad"][:, :-1]  # (B, k)
+    return sets[:, -1], objects_of(sets[:, :-1] * is_there[..., None, None])
+
+
+def one_by_one(prompts: Tensor) -> Tensor:
+    """Take prompts of V demonstrations each apart, (B, V P, 14) -> (B V, P, 14).
+
+    Raises:
+        ValueError: If their length is not that of whole demonstrations.
+    """
+    capacity = min(PROMPT_CAPACITY, prompts.shape[1])
+    if prompts.shape[1] % capacity:
+        raise ValueError(
+            f"Prompts of several demonstrations have {PROMPT_CAPACITY} rows each, which "
+            f"{prompts.shape[1]} rows are not a multiple of; take them from the environment."
+        )
+    return prompts.unflatten(1, (-1, capacity)).flatten(0, 1)
 
 
 def _observed(batch: dict[str, Tensor], key: str) -> Tensor:

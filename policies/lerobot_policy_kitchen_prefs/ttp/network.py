@@ -4,12 +4,15 @@ import torch
 import torch.nn.functional as F
 from torch import Tensor, nn
 
-from kitchen_prefs.instances import DECISION, EXTENTS, IS_OBJECT, POSITION
+from kitchen_prefs.instances import COLUMNS, DECISION, EXTENTS, IS_OBJECT, POSITION
 
 from .attention import Tokens
-from .configuration_ttp import TTPConfig
+from .clashes import Clashes
+from .configuration_ttp import ATTRIBUTES, TTPConfig
 from .encoders import InstanceEncoder
 from .pointers import make_pointer
+from .sets import is_real
+from .situations import Situations
 from .slot_attention import SlotAttention
 from .transformer import DecoderLayer, EncoderLayer
 
@@ -20,7 +23,10 @@ class TTPNetwork(nn.Module):
     def __init__(self, config: TTPConfig) -> None:
         """Make the network of a configuration."""
         super().__init__()
-        self.situation_time = config.situation_time
+        self.hidden = columns_of(config.hidden)
+        self.hidden_of_situations = (
+            self.hidden if config.situation_time else [*self.hidden, DECISION]
+        )
         self.instances = InstanceEncoder(config)
         self.encoder = nn.ModuleList(EncoderLayer(config) for _ in range(config.n_encoder_layers))
         self.encoder_norm = final_norm(config)
@@ -28,6 +34,8 @@ class TTPNetwork(nn.Module):
         self.decoder = nn.ModuleList(DecoderLayer(config) for _ in range(config.n_decoder_layers))
         self.decoder_norm = final_norm(config)
         self.pointer = make_pointer(config)
+        self.failures = FailedRows(config.dim) if config.failures else None
+        self.clashes = Clashes() if config.clashes else None
 
     def encode(self, prompts: Tensor, mask: Tensor) -> Tokens:
         """psi: encode prompts.
@@ -39,40 +47,92 @@ class TTPNetwork(nn.Module):
         Returns:
             The preference embedding gamma of each prompt, H tokens: the slots or, without, all.
         """
-        tokens = self._embed(prompts, mask)
+        tokens = self._embed(hide(prompts, self.hidden), mask)
         for layer in self.encoder:
             tokens = layer(tokens)
         tokens = tokens.with_features(self.encoder_norm(tokens.features))
         return self.slots(tokens) if self.slots else tokens
 
-    def decide(self, sets: Tensor, mask: Tensor, preference: Tokens, prompt_of: Tensor) -> Tensor:
+    def decide(self, situations: Situations, preference: Tokens, prompt_of: Tensor) -> Tensor:
         """pi: score the rows of situations.
 
+        The tokens are those of the set, then those of the history, then the ACT token.
+
         Args:
-            sets: The situations' rows, (B, N, 13).
-            mask: Which of them are real, (B, N) bool.
+            situations: B situations of N rows.
             preference: The preference embeddings of G prompts.
             prompt_of: The prompt of each situation, (B,) int.
 
         Returns:
             A score for every row, (B, N).
         """
-        if not self.situation_time:
-            decision = torch.tensor([DECISION], device=sets.device)
-            sets = sets.index_fill(-1, decision, 0)
-        act = sets.new_zeros(len(sets), 1, sets.shape[-1])
-        inputs = self._embed(torch.cat([sets, act], dim=1), F.pad(mask, (0, 1), value=True))
+        rows = torch.cat([situations.sets, situations.history], dim=1)  # (B, N + H, 13)
+        act = rows.new_zeros(len(rows), 1, rows.shape[-1])
+        shown = hide(torch.cat([rows, act], dim=1), self.hidden_of_situations)
+        inputs = self._embed(shown, F.pad(is_real(rows), (0, 1), value=True))
+        count = situations.sets.shape[1]
         tokens = inputs
+        if self.failures:
+            marks = F.pad(situations.failed, (0, shown.shape[1] - count))  # (B, N + H + 1)
+            tokens = self.failures.mark(tokens, marks)
         for layer in self.decoder:
             tokens = layer(tokens, preference, prompt_of)
-        outputs = self.decoder_norm(tokens.features)  # (B, N + 1, d)
-        return self.pointer(outputs[:, -1], inputs.features[:, :-1], outputs[:, :-1])
+        outputs = self.decoder_norm(tokens.features)  # (B, N + H + 1, d)
+        scores = self.pointer(outputs[:, -1], inputs.features[:, :count], outputs[:, :count])
+        if self.clashes:
+            scores = scores - self.clashes(shown[:, :count])
+        if self.failures:
+            scores = self.failures.lower(scores, situations, outputs[:, :count])
+        return scores
 
     def _embed(self, rows: Tensor, mask: Tensor) -> Tokens:
         geometry = rows[..., [*range(EXTENTS.start, POSITION.stop), IS_OBJECT]]  # (B, N, 7)
         return Tokens(self.instances(rows), mask, geometry)
 
 
+class FailedRows(nn.Module):
+    """What the network makes of rows that were just chosen in vain."""
+
+    def __init__(self, dim: int) -> None:
+        """Make the mark, which begins as none, and the gate."""
+        super().__init__()
+        self.marker = nn.Parameter(torch.zeros(dim))
+        self.gate = nn.Linear(dim, 1)
+
+    def mark(self, tokens: Tokens, failed: Tensor) -> Tokens:
+        """Mark tokens, those of (B, N) bool, so that all others know, too."""
+        return tokens.with_features(tokens.features + failed[..., None] * self.marker)
+
+    def lower(self, scores: Tensor, situations: Situations, outputs: Tensor) -> Tensor:
+        """Let scores fall towards the lowest of their set, as far as the gate says.
+
+        A penalty that is added could not outdo the certainty with which a row was chosen wrongly,
+        because in training such rows are rare.
+
+        Args:
+            scores: The scores, (B, N).
+            situations: What has failed in them.
+            outputs: The decoder's outputs at the rows, (B, N, d).
+
+        Returns:
+            The scores, (B, N).
+        """
+        gate = self.gate(outputs)[..., 0].sigmoid()  # (B, N)
+        real = scores.detach().masked_fill(~is_real(situations.sets), torch.inf)  # (B, N)
+        lowest = real.amin(dim=1, keepdim=True) - 1  # (B, 1)
+        return scores.where(~situations.failed, scores + gate * (lowest - scores))
+
+
 def final_norm(config: TTPConfig) -> nn.Module:
     """Make the normalisation after the last layer, which pre-norm layers need."""
     return nn.LayerNorm(config.dim) if config.pre_norm else nn.Identity()
+
+
+def columns_of(attributes: list[str]) -> list[int]:
+    """The columns of attributes."""
+    return [column for name in attributes for column in range(COLUMNS)[ATTRIBUTES[name]]]
+
+
+def hide(rows: Tensor, columns: list[int]) -> Tensor:
+    """Rows, (..., 13), with zeros in some columns."""
+    return rows.index_fill(-1, torch.tensor(columns, dtype=torch.long, device=rows.device), 0)

@@ -28,12 +28,14 @@ class Pairs(NamedTuple):
         sets: The situations, zero-padded, (S, N, 13).
         targets: The row that the expert chose in each situation, (S,) int64.
         prompt_of: The prompt of each situation, (S,) int64.
+        sample: The batch's sample that each situation is of, (S,) int64.
     """
 
     prompts: Tensor
     sets: Tensor
     targets: Tensor
     prompt_of: Tensor
+    sample: Tensor
 
 
 def make_pairs(
@@ -71,4 +73,5 @@ def make_pairs(
         sets=sets[sample],
         targets=targets[sample],
         prompt_of=torch.from_numpy(label_of).to(sets.device)[sample] + len(labels) * round_of,
+        sample=sample,
     )

@@ -29,6 +29,24 @@ def choosable(sets: Tensor) -> Tensor:
     return is_place.where(is_place_decision(sets)[:, None], is_object)
 
 
+def of_like_length(sets: Tensor) -> list[Tensor]:
+    """Part a batch so that little is padded: the place sets, and two halves of the pick sets.
+
+    Place sets are several times as long as pick sets, and these have from 4 to some 20 rows.
+
+    Args:
+        sets: Sets, (B, N, 13).
+
+    Returns:
+        The indices of each part that is not empty, (K,) int64 each.
+    """
+    is_place, length = is_place_decision(sets), is_real(sets).sum(dim=1)  # (B,) each
+    picks = (~is_place).nonzero()[:, 0]
+    picks = picks[length[picks].argsort(stable=True)]
+    parts = [*picks.tensor_split(2), is_place.nonzero()[:, 0]]
+    return [part for part in parts if len(part)]
+
+
 def chosen_rows(sets: Tensor, actions: Tensor) -> Tensor:
     """Find the rows whose poses the actions are.
 

@@ -1,0 +1,41 @@
+"""The facts of a table, results/TABLE.json: what was run, and what came of it.
+
+table, data_version, package_version   what the facts are of
+recipe, budget                         where something was trained: its recipe, and how many
+                                       decisions each training saw
+rows                                   by what they are called:
+    checkpoint | rule | options        which policy: a committed checkpoint, a rule, or what
+                                       lerobot-train was told beside the recipe
+    seconds                            how long the training's steps took
+    groups                             by split or number of dishes: the number of episodes, and
+                                       each metric's mean, low and high end of the 95 % interval
+"""
+
+import json
+from pathlib import Path
+
+from kitchen_prefs.files import write_json
+from kitchen_prefs.reproduction.tables import TABLES
+
+
+def write_facts(facts: dict, folder: Path) -> None:
+    """Write the facts of a table to FOLDER/TABLE.json."""
+    write_json(folder / f"{facts['table']}.json", facts)
+
+
+def read_facts(folder: Path) -> dict[str, dict]:
+    """The facts of the tables that FOLDER holds, in the order of `TABLES`.
+
+    Raises:
+        ValueError: If a file is not JSON.
+    """
+    files = {name: folder / f"{name}.json" for name in TABLES}
+    return {name: _read(file) for name, file in files.items() if file.exists()}
+
+
+def _read(file: Path) -> dict:
+    try:
+        return json.loads(file.read_text())
+    except ValueError as error:
+        way_out = f"`kitchen-prefs reproduce {file.stem}` writes it anew."
+        raise ValueError(f"{file} is damaged; {way_out}") from error

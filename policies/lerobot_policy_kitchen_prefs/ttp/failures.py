@@ -1,0 +1,95 @@
+"""Choices that were made in vain: remembered when acting, invented in training.
+
+A decision that cannot be carried out changes nothing. A deterministic policy that sees the same set
+again would choose the same row for ever, so the network is shown which rows it has just chosen in
+vain. Demonstrations have no such rows, as experts do not err. Training invents them: whatever the
+expert did not choose may have been tried before.
+"""
+
+import numpy as np
+import torch
+from torch import Tensor
+
+from kitchen_prefs.instances import IS_PLACE, POSITION, QUATERNION
+
+from .categories import Categories
+from .pairing import Pairs
+from .sets import choosable
+
+# The nearest row to the last choice is the same instance if it is this near: perception errs by a
+# centimetre each time. Dishes in a rack can be nearer than that, but then they are not the nearest.
+SAME = 0.05  # m, and 0.1 m a radian, as the environment measures
+# Every other situation follows on failures; then every row has failed with this probability, five
+# of the fifty places for a dish.
+SHARE_OF_SITUATIONS, SHARE_OF_ROWS = 0.5, 0.1
+
+
+class Failures:
+    """What was chosen in vain since the last success, in each of B episodes."""
+
+    def __init__(self) -> None:
+        """Begin with none."""
+        self._choices: list[Tensor] = []  # (B, 13) each
+        self._in_vain: list[Tensor] = []  # (B,) each
+
+    def find(self, sets: Tensor) -> Tensor:
+        """Mark the rows that have failed.
+
+        Args:
+            sets: What is seen now, (B, N, 13). If what was chosen last can still be chosen, that
+                choice was in vain; if not, it succeeded, and all earlier failures are forgotten.
+
+        Returns:
+            The marks, (B, N) bool.
+        """
+        failed = torch.zeros(sets.shape[:2], dtype=torch.bool, device=sets.device)
+        if not self._choices:
+            return failed
+        last_failed = self._same(sets, self._choices[-1]).any(dim=1)  # (B,)
+        self._in_vain = [in_vain & last_failed for in_vain in self._in_vain]
+        for choice, in_vain in zip(self._choices, self._in_vain, strict=True):
+            failed |= self._same(sets, choice) & in_vain[:, None]
+        return failed
+
+    def remember(self, choices: Tensor) -> None:
+        """Remember the chosen rows, (B, 13)."""
+        self._choices.append(choices)
+        self._in_vain.append(torch.ones(len(choices), dtype=torch.bool, device=choices.device))
+        while not self._in_vain[0].any():  # the last is always among them
+            del self._choices[0], self._in_vain[0]
+
+    @staticmethod
+    def _same(sets: Tensor, choices: Tensor) -> Tensor:
+        """Mark the choosable row nearest to each choice, if it is the same instance, (B, N)."""
+        metres = (sets[..., POSITION] - choices[:, None, POSITION]).norm(dim=-1)  # (B, N)
+        cosine = (sets[..., QUATERNION] * choices[:, None, QUATERNION]).sum(dim=-1).abs()
+        distance = metres + 0.1 * 2 * cosine.clamp(max=1).arccos()
+        same_kind = sets[..., IS_PLACE] == choices[:, None, IS_PLACE]
+        distance = distance.masked_fill(~(same_kind & choosable(sets)), torch.inf)
+        nearest = torch.zeros_like(same_kind).scatter_(1, distance.argmin(1, keepdim=True), 1)
+        return nearest & (distance < SAME)
+
+
+def invent_failures(pairs: Pairs, categories: Categories, generator: np.random.Generator) -> Tensor:
+    """Invent which rows have failed before the expert chose.
+
+    Where the expert chose a place, a rack or the door, that choice has not failed before. A dish
+    may have slipped from the hand.
+
+    Args:
+        pairs: Prompts and situations, seen exactly.
+        categories: The categories of dishes.
+        generator: Source of randomness.
+
+    Returns:
+        Marks of the situations' rows, (S, N) bool.
+    """
+    sets, device = pairs.sets, pairs.sets.device
+    chance = generator.random(sets.shape[:2], dtype=np.float32) < SHARE_OF_ROWS
+    chance &= generator.random((len(sets), 1), dtype=np.float32) < SHARE_OF_SITUATIONS
+    situations = torch.arange(len(sets), device=device)
+    target = sets[situations, pairs.targets]  # (S, 13)
+    graspable = categories.find(target)[1] & (target[:, IS_PLACE] == 0)  # (S,)
+    may_fail = choosable(sets)
+    may_fail[situations, pairs.targets] = graspable
+    return torch.from_numpy(chance).to(device) & may_fail

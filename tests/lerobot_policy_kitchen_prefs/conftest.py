@@ -1,0 +1,49 @@
+"""Demonstrations of four sessions, and all decisions of two of them paired with prompts."""
+
+import numpy as np
+import pytest
+import torch
+
+from kitchen_prefs.demonstrations import demonstrate, prompt_of
+from kitchen_prefs.instances import IS_OBJECT, IS_PLACE
+from kitchen_prefs.sessions import make_session
+from lerobot_policy_kitchen_prefs.ttp.categories import Categories
+from lerobot_policy_kitchen_prefs.ttp.demonstrations import Demonstrations
+from lerobot_policy_kitchen_prefs.ttp.pairing import make_pairs
+from lerobot_policy_kitchen_prefs.ttp.sets import chosen_rows
+
+
+@pytest.fixture(scope="session")
+def sessions():
+    return [make_session("val", index) for index in (0, 1, 10, 11)]
+
+
+@pytest.fixture(scope="session")
+def demonstrations(sessions):
+    rows = [prompt_of(session) for session in sessions]
+    rows = [prompt[prompt[:, IS_OBJECT] + prompt[:, IS_PLACE] > 0] for prompt in rows]
+    labels = np.array([session.label for session in sessions])
+    return Demonstrations(np.concatenate(rows), np.array([len(r) for r in rows]), labels)
+
+
+@pytest.fixture(scope="session")
+def categories(demonstrations):
+    return Categories.of(demonstrations)
+
+
+@pytest.fixture(scope="session")
+def pairs(sessions, demonstrations):
+    """All decisions of the first two sessions, each pick with three prompts."""
+    parts = [demonstrate(session) for session in sessions[:2]]
+    sets = torch.from_numpy(np.concatenate([part.instances for part in parts]))
+    actions = torch.from_numpy(np.concatenate([part.action for part in parts]))
+    episodes = np.repeat([0, 1], [len(part.action) for part in parts])
+    generator = np.random.default_rng(0)
+    return make_pairs(sets, chosen_rows(sets, actions), episodes, demonstrations, 3, generator)
+
+
+@pytest.fixture(scope="session")
+def place_sets(pairs):
+    """Sets of place decisions, as many rows as the longest has, (B, N, 13)."""
+    sets = pairs.sets[(pairs.sets[..., IS_PLACE] > 0).any(dim=1)]
+    return sets[:, : int((sets != 0).any(dim=-1).sum(dim=1).max())]
