@@ -68,6 +68,18 @@ def read_log(run: Path) -> list[Logged]:
     return [Logged(*map(float, numbers)) for numbers in found]
 
 
+def start(command: list[str]) -> subprocess.Popen[str]:
+    """Start a command in one thread; all that it says comes out of one pipe."""
+    return subprocess.Popen(
+        command,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        errors="replace",
+        env=os.environ | ONE_THREAD,
+    )
+
+
 def _is_finished(checkpoint: Path) -> bool:
     """Whether a run's last checkpoint was saved at its last step."""
     state = checkpoint.parent / "training_state" / "training_step.json"
@@ -79,14 +91,7 @@ def _is_finished(checkpoint: Path) -> bool:
 
 def _run(command: list[str], log: Path) -> int:
     """Run a command with a bar that follows lerobot-train's own; its words go to the log."""
-    process = subprocess.Popen(
-        command,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        text=True,
-        errors="replace",
-        env=os.environ | ONE_THREAD,
-    )
+    process = start(command)
     assert process.stdout is not None
     with log.open("w") as file, tqdm(desc="lerobot-train", unit="step") as bar:
         for line in process.stdout:  # a carriage return ends a line too

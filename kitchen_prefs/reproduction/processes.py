@@ -1,15 +1,13 @@
 """Another command, run with a progress bar and a log."""
 
-import os
 import re
-import subprocess
 import sys
 from collections.abc import Sequence
 from pathlib import Path
 
 from tqdm import tqdm
 
-from kitchen_prefs.quickstart.training import ONE_THREAD
+from kitchen_prefs.quickstart.training import start
 
 # What tqdm prints: "Training:   5%|▌         | 50/1000 [00:12<03:50,  4.12step/s]".
 BAR = re.compile(r"[\w-]+: +\d+%\|.*?\| *\d+/\d+ \[.*?\]")
@@ -27,14 +25,7 @@ def run_module(module: str, arguments: Sequence[str], log: Path, name: str) -> N
     Raises:
         OSError: If the command fails; the message names the log.
     """
-    process = subprocess.Popen(
-        [sys.executable, "-m", module, *arguments],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        text=True,
-        errors="replace",
-        env=os.environ | ONE_THREAD,
-    )
+    process = start([sys.executable, "-m", module, *arguments])
     assert process.stdout is not None
     with log.open("a") as file, tqdm(desc=name, bar_format="{desc}", leave=False) as bar:
         for line in process.stdout:  # a carriage return ends a line too

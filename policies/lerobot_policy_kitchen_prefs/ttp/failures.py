@@ -10,6 +10,7 @@ import numpy as np
 import torch
 from torch import Tensor
 
+from kitchen_prefs.actions import METRES_PER_RADIAN
 from kitchen_prefs.instances import IS_PLACE, POSITION, QUATERNION
 
 from .categories import Categories
@@ -18,7 +19,7 @@ from .sets import choosable
 
 # The nearest row to the last choice is the same instance if it is this near: perception errs by a
 # centimetre each time. Dishes in a rack can be nearer than that, but then they are not the nearest.
-SAME = 0.05  # m, and 0.1 m a radian, as the environment measures
+SAME = 0.05  # m, a turn counting as it does in the environment
 # Every other situation follows on failures; then every row has failed with this probability, five
 # of the fifty places for a dish.
 SHARE_OF_SITUATIONS, SHARE_OF_ROWS = 0.5, 0.1
@@ -63,7 +64,7 @@ class Failures:
         """Mark the choosable row nearest to each choice, if it is the same instance, (B, N)."""
         metres = (sets[..., POSITION] - choices[:, None, POSITION]).norm(dim=-1)  # (B, N)
         cosine = (sets[..., QUATERNION] * choices[:, None, QUATERNION]).sum(dim=-1).abs()
-        distance = metres + 0.1 * 2 * cosine.clamp(max=1).arccos()
+        distance = metres + METRES_PER_RADIAN * 2 * cosine.clamp(max=1).arccos()
         same_kind = sets[..., IS_PLACE] == choices[:, None, IS_PLACE]
         distance = distance.masked_fill(~(same_kind & choosable(sets)), torch.inf)
         nearest = torch.zeros_like(same_kind).scatter_(1, distance.argmin(1, keepdim=True), 1)
