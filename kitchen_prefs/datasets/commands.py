@@ -39,7 +39,7 @@ def show(name: Name) -> None:
     typer.echo(f"{content.repo_id}: {len(content.sessions)} episodes, for {content.purpose}")
     for column, feature in FEATURES.items():
         typer.echo(f"  {column:30} {feature['dtype']:8} {feature['shape']}")
-    published = published_fingerprint(content.name) or "none: subsets of train are not published"
+    published = published_fingerprint(content.name) or "none: subsets are not published"
     typer.echo(f"published fingerprint  {published}")
     if not root.exists():
         typer.echo(f"not on this machine; `kitchen-prefs datasets make {content.name}` makes it")

@@ -66,7 +66,7 @@ def read_manifest(name: str, root: Path) -> dict:
 
 
 def published_fingerprint(name: str) -> str | None:
-    """The fingerprint of a published data set; None for a subset of train."""
+    """The fingerprint of a published data set; None for a subset."""
     return json.loads(FINGERPRINTS.read_text())["fingerprints"].get(name)
 
 

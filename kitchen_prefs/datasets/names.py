@@ -11,11 +11,13 @@ from kitchen_prefs.splits import DATA_VERSION, HELD_OUT_PEOPLE, SEEN_PEOPLE, SPL
 
 NAMESPACE = "kitchen_prefs"
 
-# dishwasher-<split>-v1, dishwasher-train-all-v1, or dishwasher-train-p<1..7>-d<1..80>-v1: the first
-# p preferences of train with d demonstrations each.
+# dishwasher-<split>-v1, dishwasher-train-all-v1, dishwasher-train-p<1..7>-d<1..80>-v1: the first p
+# preferences of train with d demonstrations each, or dishwasher-prompts-of<8..12>-d<1..80>-v1: the
+# first d demonstrations of one held-out preference in prompts.
 GRAMMAR = re.compile(
     rf"(?:{NAMESPACE}/)?dishwasher-(?:(?P<split>{'|'.join(SPLITS)})|(?P<all>train-all)"
-    r"|train-p(?P<preferences>[1-7])-d(?P<demonstrations>[1-9]|[1-7][0-9]|80))-v(?P<version>[0-9]+)"
+    r"|(?:train-p(?P<preferences>[1-7])|prompts-of(?P<held_out>[89]|1[0-2]))"
+    r"-d(?P<demonstrations>[1-9]|[1-7][0-9]|80))-v(?P<version>[0-9]+)"
 )
 
 
@@ -58,7 +60,9 @@ def content_of(name: str) -> Content:
         raise ValueError(
             f"There is no data set {name!r}. {suggest(name, dataset_names())} Subsets of train are "
             f"named like dishwasher-train-p4-d40-v{DATA_VERSION}: 1 to 7 preferences, 1 to 80 "
-            "demonstrations of each."
+            "demonstrations of each; those of prompts like "
+            f"dishwasher-prompts-of8-d1-v{DATA_VERSION}: one of the preferences 8 to 12, 1 to 80 "
+            "demonstrations."
         )
     name = name.removeprefix(f"{NAMESPACE}/")
     if found["version"] != str(DATA_VERSION):
@@ -74,7 +78,12 @@ def content_of(name: str) -> Content:
     if found["split"]:
         split = SPLITS[found["split"]]
         return Content(name, tuple((split.name, i) for i in range(split.sessions)), split.purpose)
-    preferences, demonstrations = int(found["preferences"]), int(found["demonstrations"])
+    demonstrations = int(found["demonstrations"])
+    if found["held_out"]:
+        number = int(found["held_out"])
+        purpose = f"fine-tuning on preference {number}, number of demonstrations: {demonstrations}"
+        return Content(name, _sessions("prompts", (number - 1,), demonstrations), purpose)
+    preferences = int(found["preferences"])
     purpose = f"training on {preferences} preferences, {demonstrations} demonstrations each"
     sessions = _sessions("train", SEEN_PEOPLE[:preferences], demonstrations)
     return Content(name, sessions, purpose)

@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 from kitchen_prefs.files import make_folder, whole_file
+from kitchen_prefs.reproduction.table import Curves
 from kitchen_prefs.reproduction.tables import TABLES, get_table
 
 app = typer.Typer()
@@ -33,6 +34,8 @@ def reproduce(
     """Re-run tables of the paper: train what they need, evaluate it, write JSON and a picture.
 
     What is finished is kept: a command that was stopped goes on where it was.
+    The table "learning" takes the recipes as they are, with runs in outputs/;
+    --budget, --jobs and --out do not concern it.
 
     For example:
     kitchen-prefs reproduce main counts
@@ -42,13 +45,17 @@ def reproduce(
     make_folder(out, "--out")
     make_folder(results, "--results")
     from kitchen_prefs.reproduction.facts import write_facts
-    from kitchen_prefs.reproduction.pictures import draw_table
+    from kitchen_prefs.reproduction.learning import run_curves
+    from kitchen_prefs.reproduction.pictures import draw
     from kitchen_prefs.reproduction.running import run_table
 
     for name, table in chosen.items():
-        facts = run_table(name, table, budget, jobs, out)
+        if isinstance(table, Curves):
+            facts = run_curves(name, table)
+        else:
+            facts = run_table(name, table, budget, jobs, out)
         write_facts(facts, results)
-        draw_table(table, facts, results / f"{name}.png")
+        draw(table, facts, results / f"{name}.png")
         typer.echo(f"{name} is in {results}.")
 
 

@@ -2,20 +2,44 @@
 
 table, data_version, package_version   what the facts are of
 recipe, budget                         where something was trained: its recipe, and how many
-                                       decisions each training saw
+                                       decisions each training from nothing saw
 rows                                   by what they are called:
     checkpoint | rule | options        which policy: a committed checkpoint, a rule, or what
                                        lerobot-train was told beside the recipe
     seconds                            how long the training's steps took
+    policies                           instead of these two, where a row stands for several
+                                       policies: the two of each
     groups                             by split or number of dishes: the number of episodes, and
                                        each metric's mean, low and high end of the 95 % interval
+    steps, seconds, best, points       of a learning curve instead: how many steps in how many
+                                       seconds, the best checkpoint's step, and each checkpoint's
+                                       step, seconds and metrics on val
 """
 
 import json
+from importlib.metadata import version
 from pathlib import Path
 
 from kitchen_prefs.files import write_json
 from kitchen_prefs.reproduction.tables import TABLES
+from kitchen_prefs.splits import DATA_VERSION
+
+
+def make_facts(name: str, rows: dict[str, dict], conditions: dict) -> dict:
+    """The facts of a table.
+
+    Args:
+        name: The table's name.
+        rows: What came of it.
+        conditions: The recipe and the budget, where something was trained with them.
+    """
+    return {
+        "table": name,
+        "data_version": DATA_VERSION,
+        "package_version": version("lerobot_policy_kitchen_prefs"),
+        **conditions,
+        "rows": rows,
+    }
 
 
 def write_facts(facts: dict, folder: Path) -> None:

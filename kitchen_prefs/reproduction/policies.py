@@ -1,12 +1,20 @@
-"""What a table evaluates: committed checkpoints, rules, and trainings of a recipe."""
+"""What a table evaluates: committed checkpoints, rules, trainings of a recipe, fine-tunings."""
 
 from dataclasses import dataclass
 from pathlib import Path
 
 from kitchen_prefs.recipes import recipe_file
-from kitchen_prefs.splits import DATA_VERSION
+from kitchen_prefs.splits import DATA_VERSION, HELD_OUT_PEOPLE
 
 RECIPE = "ttp_quick"  # what every training starts from: it learns from nothing in minutes
+
+# A network that has learned already needs small steps and no warm-up, and one preference as it is.
+FINE_TUNING = (
+    "--policy.relabel=false",
+    "--policy.rounds=1",
+    "--optimizer.lr=1.0e-4",  # a fifth of the recipe's
+    "--scheduler.num_warmup_steps=0",
+)
 
 
 @dataclass(frozen=True)
@@ -58,12 +66,15 @@ class Training:
         dataset: What it is trained on.
         batch_size: How many decisions a step sees.
         overrides: Further options of lerobot-train.
+        preference: The label of the preference whose sessions alone it is measured on; None for
+            all.
     """
 
     name: str
     dataset: str = f"dishwasher-train-v{DATA_VERSION}"
     batch_size: int = 32  # the recipe's
     overrides: tuple[str, ...] = ()
+    preference: int | None = None
 
     def steps(self, budget: int) -> int:
         """How many steps see `budget` decisions.
@@ -88,9 +99,46 @@ class Training:
         ]
 
 
+@dataclass(frozen=True)
+class FineTuning:
+    """A training that goes on with one demonstration of a held-out preference, once for each.
+
+    Attributes:
+        start: The training whose checkpoint they all begin from.
+        steps: How many steps each takes.
+    """
+
+    start: Training
+    steps: int
+
+    @property
+    def name(self) -> str:
+        """Names the folder of the runs."""
+        return f"fine-tuned-{self.steps}"
+
+    @property
+    def budget(self) -> int:
+        """How many decisions each sees."""
+        return self.steps * self.start.batch_size
+
+    @property
+    def trainings(self) -> tuple[Training, ...]:
+        """One for each held-out preference, measured on the sessions of that one alone."""
+        return tuple(
+            Training(
+                name=f"preference-{label + 1}",
+                dataset=f"dishwasher-prompts-of{label + 1}-d1-v{DATA_VERSION}",
+                batch_size=self.start.batch_size,
+                overrides=FINE_TUNING,
+                preference=label,
+            )
+            for label in HELD_OUT_PEOPLE
+        )
+
+
 def numbered(name: str, prompts: int) -> str:
     """The name of a policy with its number of prompts, if that is not one."""
     return name if prompts == 1 else f"{name}-{prompts}-prompts"
 
 
-Policy = Committed | Rule | Training
+Policy = Committed | Rule | Training | FineTuning

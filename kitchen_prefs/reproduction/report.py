@@ -7,7 +7,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from kitchen_prefs.reproduction.facts import read_facts
-from kitchen_prefs.reproduction.tables import TABLES, Table
+from kitchen_prefs.reproduction.table import Curves, Table
+from kitchen_prefs.reproduction.tables import TABLES
 
 YARDSTICK = "symbolic"  # the row whose means the shares are of
 HOW_TO_READ = (
@@ -43,18 +44,26 @@ def report(folder: Path) -> str:
     return "\n\n".join(parts) + "\n"
 
 
-def _section(name: str, table: Table, facts: dict, folder: Path) -> Iterator[str]:
+def _section(name: str, table: Table | Curves, facts: dict, folder: Path) -> Iterator[str]:
     yield f"## {table.title}"
     yield f"In the paper: {table.paper}"
+    if table.note:
+        yield f"Here: {table.note}"
     yield f"![{table.title}]({folder.name}/{name}.png)"
-    if len(table.groups) > 1:
-        for metric in table.metrics:
-            yield f"**{metric}**"
-            yield _by_group(table, facts["rows"], metric)
-    else:
-        yield _by_metric(table, facts["rows"])
+    yield from _figures(table, facts["rows"])
     yield _how_made(name, facts)
     yield from _prose(folder / f"{name}.md")
+
+
+def _figures(table: Table | Curves, rows: dict[str, dict]) -> Iterator[str]:
+    if isinstance(table, Curves):
+        yield _by_recipe(table, rows)
+    elif len(table.groups) > 1:
+        for metric in table.metrics:
+            yield f"**{metric}**"
+            yield _by_group(table, rows, metric)
+    else:
+        yield _by_metric(table, rows)
 
 
 def _prose(file: Path) -> list[str]:
@@ -92,17 +101,35 @@ def _by_metric(table: Table, rows: dict[str, dict]) -> str:
     return _markdown(lines)
 
 
+def _by_recipe(curves: Curves, rows: dict[str, dict]) -> str:
+    """A row for each recipe: how long it was trained, and what its best checkpoint is worth."""
+    metrics = [f"{metric} at the best step" for metric in curves.drawn]
+    lines = [["recipe", "steps", "minutes", "best step", *metrics]]
+    for recipe, facts in rows.items():
+        (best,) = [point for point in facts["points"] if point["step"] == facts["best"]]
+        cells = [_cell(best["metrics"][metric]) for metric in curves.drawn]
+        minutes = f"{facts['seconds'] / 60:.0f}"
+        lines.append([f"`{recipe}`", f"{facts['steps']:,}", minutes, f"{best['step']:,}", *cells])
+    return _markdown(lines)
+
+
 def _how_made(name: str, facts: dict) -> str:
     """The command that made the facts, and under which conditions."""
     versions = f"data version {facts['data_version']}, package {facts['package_version']}"
     if "budget" not in facts:
         return f"Made by `kitchen-prefs reproduce {name}`; {versions}."
-    seconds = [row["seconds"] for row in facts["rows"].values() if "seconds" in row]
+    seconds = list(_seconds(facts["rows"]))
     return (
         f"Made by `kitchen-prefs reproduce {name} --budget={facts['budget']}`; {versions}. Each "
-        f"training saw {facts['budget']:,} decisions with the recipe `{facts['recipe']}`, which "
-        f"took {min(seconds):,} to {max(seconds):,} s."
+        f"training from nothing saw {facts['budget']:,} decisions with the recipe "
+        f"`{facts['recipe']}`; the trainings took {min(seconds):,} to {max(seconds):,} s each."
     )
+
+
+def _seconds(rows: dict[str, dict]) -> Iterator[int]:
+    """How long each training took; a row may stand for several."""
+    for row in rows.values():
+        yield from (of["seconds"] for of in row.get("policies", [row]) if "seconds" in of)
 
 
 def _markdown(lines: list[list[str]]) -> str:

@@ -20,6 +20,7 @@ from kitchen_prefs.datasets import dataset_names, dataset_root, load_dataset, ma
 from kitchen_prefs.datasets.columns import FEATURES, FPS, ROBOT_TYPE, columns_of, read_columns
 from kitchen_prefs.datasets.manifest import MANIFEST, published_fingerprint
 from kitchen_prefs.datasets.names import content_of
+from kitchen_prefs.datasets.verification import CHECKS, verify_dataset
 from kitchen_prefs.demonstrations import demonstrate
 from kitchen_prefs.sessions import make_session
 from kitchen_prefs.splits import DATA_VERSION, SPLITS
@@ -64,10 +65,30 @@ def test_a_subset_has_the_first_preferences_with_the_same_number_of_demonstratio
     assert len(set(sessions)) == len(sessions)
 
 
+@given(st.integers(8, 12), st.integers(1, 80))
+def test_a_subset_of_prompts_has_the_first_demonstrations_of_one_held_out_preference(number, d):
+    sessions = content_of(f"dishwasher-prompts-of{number}-d{d}-v1").sessions
+    first = [i for i, person in enumerate(SPLITS["prompts"].people) if person == number - 1][:d]
+    assert list(sessions) == [("prompts", i) for i in first]
+
+
+def test_a_single_demonstration_is_made_and_verified(home):
+    name = "dishwasher-prompts-of9-d1-v1"
+    dataset = load_dataset(name)
+    assert dataset.num_episodes == 1
+    assert {int(label) for label in dataset.hf_dataset["preference"]} == {8}
+    assert len(list(verify_dataset(name))) == 1 + len(CHECKS)
+
+
 @pytest.mark.parametrize(
     "name",
     [
         "dishwasher-train",
+        "dishwasher-prompts-of7-d1-v1",
+        "dishwasher-prompts-of13-d1-v1",
+        "dishwasher-prompts-of8-d0-v1",
+        "dishwasher-prompts-of8-d81-v1",
+        "dishwasher-prompts-p1-d1-v1",
         "dishwasher-train-p8-d1-v1",
         "dishwasher-train-p0-d1-v1",
         "dishwasher-train-p1-d0-v1",

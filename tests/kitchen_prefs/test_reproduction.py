@@ -1,6 +1,8 @@
 """The paper's tables: what they train, what is kept, what the report says."""
 
 import json
+import shutil
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -14,11 +16,13 @@ from kitchen_prefs.datasets.names import content_of
 from kitchen_prefs.recipes import recipe_file
 from kitchen_prefs.reproduction import running, tables, training
 from kitchen_prefs.reproduction.facts import read_facts, write_facts
-from kitchen_prefs.reproduction.pictures import COLOURS, draw_table
-from kitchen_prefs.reproduction.policies import RECIPE, Committed, Rule, Training
+from kitchen_prefs.reproduction.pictures import COLOURS, draw
+from kitchen_prefs.reproduction.policies import RECIPE, Committed, FineTuning, Rule, Training
 from kitchen_prefs.reproduction.processes import run_module
 from kitchen_prefs.reproduction.report import YARDSTICK, report
-from kitchen_prefs.reproduction.tables import BASE, TABLES, Table, get_table
+from kitchen_prefs.reproduction.rows import BASE
+from kitchen_prefs.reproduction.table import Table
+from kitchen_prefs.reproduction.tables import TABLES, get_table
 from kitchen_prefs.reproduction.training import seconds_of, train
 
 ROOT = Path(__file__).parents[2]
@@ -31,9 +35,23 @@ def run(*arguments):
     return CliRunner().invoke(command_line(), list(map(str, arguments)))
 
 
+# All but those of learning curves.
+POLICY_TABLES = {name: table for name, table in TABLES.items() if isinstance(table, Table)}
+
+
 def trainings():
-    policies = [policy for table in TABLES.values() for policy in table.policies]
+    policies = [policy for table in POLICY_TABLES.values() for policy in table.policies]
     return [policy for policy in policies if isinstance(policy, Training)]
+
+
+def seconds_of_row(policy):
+    """As the facts keep them: of a fine-tuning a few seconds for each of its trainings."""
+    match policy:
+        case Training():
+            return {"seconds": 900}
+        case FineTuning():
+            return {"policies": [{"seconds": 3 + n} for n, _ in enumerate(policy.trainings)]}
+    return {}
 
 
 def made_up_facts(name, mean=0.4):
@@ -54,8 +72,7 @@ def made_up_facts(name, mean=0.4):
             }
             for group in table.groups
         }
-        trained = isinstance(policy, Training)
-        rows[label] = {"groups": groups, **({"seconds": 900} if trained else {})}
+        rows[label] = {"groups": groups, **seconds_of_row(policy)}
     conditions = {"recipe": RECIPE, "budget": 32_000} if table.trains else {}
     return {
         "table": name,
@@ -81,6 +98,9 @@ class FakeTraining:
         (checkpoint / "training_state").mkdir(exist_ok=True)
         step = json.dumps({"step": self.steps})
         (checkpoint / "training_state" / "training_step.json").write_text(step)
+        if "steps" in options:
+            config = json.dumps({"steps": int(options["steps"])})
+            (checkpoint / "pretrained_model" / "train_config.json").write_text(config)
         with log.open("a") as file:
             file.write(LOGGED.format(self.steps))
 
@@ -122,17 +142,44 @@ def test_a_training_that_was_stopped_goes_on_from_its_checkpoint(tmp_path, lerob
 def test_a_training_that_was_stopped_before_its_first_checkpoint_begins_anew(
     tmp_path, lerobot_train
 ):
-    (tmp_path / "train").mkdir()
-    (tmp_path / "train" / "left").touch()
     lerobot_train(20)
     train(BASE, 640, tmp_path)
+    shutil.rmtree(tmp_path / "train" / "checkpoints")
+    (tmp_path / "train" / "left").touch()
+    train(BASE, 640, tmp_path)
     assert not (tmp_path / "train" / "left").exists()
+
+
+def test_a_run_that_begins_anew_has_a_log_of_its_own(tmp_path, lerobot_train):
+    lerobot_train(20)
+    train(BASE, 640, tmp_path)
+    shutil.rmtree(tmp_path / "train")
+    train(BASE, 640, tmp_path)
+    assert (tmp_path / "train.log").read_text() == LOGGED.format(20)
+
+
+def test_a_run_that_goes_on_goes_on_with_its_log(tmp_path, lerobot_train):
+    lerobot_train(5)
+    train(BASE, 640, tmp_path)
+    lerobot_train(20)
+    train(BASE, 640, tmp_path)
+    assert (tmp_path / "train.log").read_text() == LOGGED.format(5) + LOGGED.format(20)
+
+
+def test_a_run_that_somebody_else_began_is_left_alone(tmp_path, lerobot_train):
+    fake = lerobot_train(20)
+    (tmp_path / "train").mkdir()
+    (tmp_path / "train" / "theirs").touch()
+    with pytest.raises(ValueError, match="did not begin; let it finish or delete it"):
+        train(BASE, 640, tmp_path)
+    assert (tmp_path / "train" / "theirs").exists()
+    assert not fake.told
 
 
 def test_a_run_with_other_settings_is_refused(tmp_path, lerobot_train):
     lerobot_train(20)
     train(BASE, 640, tmp_path)
-    with pytest.raises(ValueError, match="delete it, or give another --out"):
+    with pytest.raises(ValueError, match="delete it or move it elsewhere"):
         train(Training("base", overrides=("--policy.noise=0",)), 640, tmp_path)
 
 
@@ -174,12 +221,33 @@ def test_a_checkpoint_that_is_not_there_is_said_before_anything_runs(tmp_path, m
         running.run_table("missing", missing, 32, 1, tmp_path)
 
 
+def test_a_fine_tuning_goes_on_from_the_checkpoint_of_another_training(tmp_path, lerobot_train):
+    fake = lerobot_train(20)
+    start = train(BASE, 640, tmp_path / "base")
+    tuning = FineTuning(BASE, 20)
+    train(tuning.trainings[0], tuning.budget, tmp_path / "tuned", start)
+    assert {
+        f"--policy.path={start}",
+        "--steps=20",
+        "--optimizer.lr=1.0e-4",
+        "--dataset.repo_id=kitchen_prefs/dishwasher-prompts-of8-d1-v1",
+    } < set(fake.told[1])
+
+
+def test_a_training_that_two_ask_for_at_once_is_run_once(tmp_path, lerobot_train):
+    fake = lerobot_train(20)
+    with ThreadPoolExecutor(4) as pool:
+        list(pool.map(lambda _: train(BASE, 640, tmp_path), range(4)))
+    assert len(fake.told) == 1
+
+
 def test_every_training_has_its_data_set_and_its_settings():
     from lerobot_policy_kitchen_prefs.ttp.configuration_ttp import TTPConfig
 
-    for policy in trainings():
+    for policy in (*trainings(), *FineTuning(BASE, 1).trainings):
         content_of(policy.dataset)
-        for override in policy.overrides:
+        settings = [one for one in policy.overrides if one.startswith("--policy.")]
+        for override in settings:
             assert hasattr(TTPConfig(), override.removeprefix("--policy.").partition("=")[0])
 
 
@@ -199,12 +267,12 @@ def test_the_recipe_is_what_the_base_rows_are_called():
 
 
 def test_a_table_of_several_groups_has_the_yardstick():
-    several = [table for table in TABLES.values() if len(table.groups) > 1]
+    several = [table for table in POLICY_TABLES.values() if len(table.groups) > 1]
     assert several
     assert all(YARDSTICK in table.rows for table in several)
 
 
-@pytest.mark.parametrize("name", TABLES)
+@pytest.mark.parametrize("name", POLICY_TABLES)
 def test_the_papers_values_stand_where_ours_do(name):
     table = TABLES[name]
     places = table.groups if len(table.groups) > 1 else tuple(table.rows)
@@ -221,7 +289,8 @@ def test_the_report_sets_our_figures_beside_the_papers(tmp_path):
     assert "| TTP in the paper | 0.62 | 0.54 | 0.34 | - | - | - |" in text
     assert "| pose, time | 0.40 [0.30, 0.50] | 0.40 [0.30, 0.50] | 0.419 |" in text
     assert "`kitchen-prefs reproduce attributes --budget=32000`" in text
-    assert "saw 32,000 decisions with the recipe `ttp_quick`, which took 900 to 900 s" in text
+    assert "training from nothing saw 32,000 decisions with the recipe `ttp_quick`" in text
+    assert "the trainings took 900 to 900 s each" in text
 
 
 def test_the_report_names_what_is_missing_and_takes_the_prose_as_it_is(tmp_path):
@@ -235,19 +304,28 @@ def test_the_report_names_what_is_missing_and_takes_the_prose_as_it_is(tmp_path)
     assert {name for name in TABLES if f"`{name}`" in missing} == set(TABLES) - {"counts"}
 
 
+def test_the_report_says_what_is_done_otherwise_than_in_the_paper(tmp_path):
+    write_facts(made_up_facts("finetuning"), tmp_path)
+    write_facts(made_up_facts("history"), tmp_path)
+    text = report(tmp_path)
+    assert "all rows but 0 belong to the open track" in text
+    assert "the trainings took 3 to 900 s each" in text
+    assert "trained on all decisions of preference 1 and measured on the picks" in text
+    assert "| PE, other prompt on unseen_preferences (70) |" in text
+
+
 def test_damaged_facts_are_named(tmp_path):
     (tmp_path / "main.json").write_text('{"table": ')
     with pytest.raises(ValueError, match=r"main\.json is damaged; `kitchen-prefs reproduce main`"):
         report(tmp_path)
 
 
-@pytest.mark.parametrize("name", ["main", "attributes"])
-def test_a_picture_shows_our_means_and_the_papers_values(tmp_path, name):
-    facts = made_up_facts(name)
-    draw_table(TABLES[name], facts, tmp_path / "table.png")
+@pytest.mark.parametrize(("name", "ours"), [("main", 7), ("attributes", 1), ("finetuning", 2)])
+def test_a_picture_shows_our_means_and_the_papers_values(tmp_path, name, ours):
+    table = TABLES[name]
+    draw(table, made_up_facts(name), tmp_path / "table.png")
     pixels = np.asarray(Image.open(tmp_path / "table.png").convert("RGB")).astype(int)
-    series = len(facts["rows"]) if name == "main" else 1
-    for colour in (*COLOURS[:series], "#000000"):
+    for colour in (*COLOURS[:ours], *["#000000"] * bool(table.paper_values)):
         red_green_blue = [int(colour[i : i + 2], 16) for i in (1, 3, 5)]
         assert (np.abs(pixels - red_green_blue).sum(axis=-1) < 20).sum() > 200
 

@@ -11,6 +11,7 @@ from lerobot_policy_kitchen_prefs.ttp.categories import Categories
 from lerobot_policy_kitchen_prefs.ttp.demonstrations import Demonstrations
 from lerobot_policy_kitchen_prefs.ttp.pairing import make_pairs
 from lerobot_policy_kitchen_prefs.ttp.sets import chosen_rows
+from lerobot_policy_kitchen_prefs.ttp.stands import Stands
 
 
 @pytest.fixture(scope="session")
@@ -29,6 +30,11 @@ def demonstrations(sessions):
 @pytest.fixture(scope="session")
 def categories(demonstrations):
     return Categories.of(demonstrations)
+
+
+@pytest.fixture(scope="session")
+def stands(demonstrations, categories):
+    return Stands.of(demonstrations, categories)
 
 
 @pytest.fixture(scope="session")

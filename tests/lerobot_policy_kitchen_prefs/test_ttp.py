@@ -8,7 +8,16 @@ from lerobot.datasets import LeRobotDataset
 
 from kitchen_prefs.datasets import make_dataset
 from kitchen_prefs.demonstrations import demonstrate, prompt_of
-from kitchen_prefs.instances import CAPACITY, CHOSEN, COLUMNS, DECISION, IS_OBJECT, IS_PLACE, POSE
+from kitchen_prefs.instances import (
+    CAPACITY,
+    CHOSEN,
+    COLUMNS,
+    DECISION,
+    IS_OBJECT,
+    IS_PLACE,
+    POSE,
+    POSITION,
+)
 from kitchen_prefs.sessions import make_session, prompt_session
 from lerobot_policy_kitchen_prefs.ttp import TTPConfig, TTPPolicy
 from lerobot_policy_kitchen_prefs.ttp.configuration_ttp import ATTRIBUTES
@@ -287,10 +296,23 @@ def test_padding_changes_no_score(settings, seed):
         assert torch.allclose(scores_of(policy, batch), padded, atol=1e-3)
 
 
+def test_an_object_out_of_reach_of_every_place_changes_no_place_s_score():
+    policy = perturbed(make_policy(**COMPACT), 0)
+    batch = observations([0, 1], 3)  # where the first dish is put
+    before = scores_of(policy, batch)
+    sets = batch["observation.instances"]
+    is_place = sets[..., IS_PLACE] > 0
+    assert is_place.any(dim=1).all()
+    counter = (sets[..., IS_OBJECT] > 0) & (sets[..., POSITION][..., 1] > 0)
+    assert counter.any()
+    sets[..., POSITION][counter] += 1.0
+    assert torch.equal(scores_of(policy, batch)[is_place], before[is_place])
+
+
 @BOTH
 @pytest.mark.parametrize("attribute", ["pose", "category", "time"])
 def test_a_hidden_attribute_changes_no_score(settings, attribute):
-    settings = settings | {"clashes": False, "situation_time": True}
+    settings = settings | {"situation_time": True}
     policy, sees_all = make_policy(**settings, hidden=[attribute]), make_policy(**settings)
     batch = observations([0, 1], 3)
     changed = {key: rows.clone() for key, rows in batch.items()}

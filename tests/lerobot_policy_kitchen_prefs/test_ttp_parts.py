@@ -14,6 +14,7 @@ from kitchen_prefs.instances import (
     EXTENTS,
     IS_OBJECT,
     IS_PLACE,
+    POSE,
     POSITION,
     QUATERNION,
 )
@@ -25,6 +26,7 @@ from lerobot_policy_kitchen_prefs.ttp.prompts import tokens_of_prompts
 from lerobot_policy_kitchen_prefs.ttp.relabelling import relabel
 from lerobot_policy_kitchen_prefs.ttp.scheduler import ExponentialDecaySchedulerConfig
 from lerobot_policy_kitchen_prefs.ttp.sets import chosen_rows, is_real
+from lerobot_policy_kitchen_prefs.ttp.stands import find_racks
 
 HEIGHT, ELEVATION = 2, 5  # columns
 FIXTURES = 3  # the door and two racks
@@ -89,11 +91,14 @@ def test_all_dishes_and_places_have_a_category_and_nothing_else_has(pairs, categ
 
 @settings(max_examples=10, deadline=None)
 @given(seed=SEEDS)
-def test_relabelling_permutes_extents_and_sets_dishes_on_the_counter(pairs, categories, seed):
-    relabelled = relabel(pairs, categories, np.random.default_rng(seed))
+def test_relabelling_permutes_extents_and_sets_dishes_on_the_counter(
+    pairs, categories, stands, seed
+):
+    relabelled = relabel(pairs, categories, stands, np.random.default_rng(seed))
     for before, after in ((pairs.prompts, relabelled.prompts), (pairs.sets, relabelled.sets)):
         kept = [c for c in range(before.shape[-1]) if c not in (0, 1, 2, ELEVATION)]
-        assert torch.equal(before[..., kept], after[..., kept])
+        elsewhere = ~_stands_in_rack(before, categories)
+        assert torch.equal(before[elsewhere][:, kept], after[elsewhere][:, kept])
         for old, new in zip(before[..., EXTENTS], after[..., EXTENTS], strict=True):
             pairs_of_extents = torch.cat([old, new], dim=-1).unique(dim=0)
             assert len(pairs_of_extents) == len(old.unique(dim=0)) == len(new.unique(dim=0))
@@ -102,13 +107,45 @@ def test_relabelling_permutes_extents_and_sets_dishes_on_the_counter(pairs, cate
     assert torch.equal(relabelled.sets[is_place], pairs.sets[is_place])
 
 
+@settings(max_examples=10, deadline=None)
+@given(seed=SEEDS)
+def test_relabelled_dishes_stand_in_the_same_rack_as_such_dishes_do(
+    pairs, demonstrations, categories, stands, seed
+):
+    relabelled = relabel(pairs, categories, stands, np.random.default_rng(seed))
+    rows = demonstrations.rows
+    known = rows[(rows[:, IS_PLACE] > 0) & (rows[:, CHOSEN] > 0)]
+    shown = {(tuple(row[EXTENTS]), tuple(row[POSE])) for row in known.tolist()}
+    of_rack = {(extents, _is_high(pose)) for extents, pose in shown}
+    in_rack = _stands_in_rack(pairs.prompts, categories)
+    moved = 0
+    for old, new in zip(pairs.prompts[in_rack], relabelled.prompts[in_rack], strict=True):
+        extents, pose = tuple(new[EXTENTS].tolist()), tuple(new[POSE].tolist())
+        assert _is_high(pose) == _is_high(old[POSE])
+        if (extents, _is_high(pose)) in of_rack:
+            assert (extents, pose) in shown
+            moved += not torch.equal(old[POSE], new[POSE])
+        else:
+            assert torch.equal(old[POSE], new[POSE])
+    assert moved
+
+
+def _is_high(pose):
+    """Whether a pose in a rack is in the top one, half a metre above the floor."""
+    return bool(pose[2] > 0.5)
+
+
+def _stands_in_rack(rows, categories):
+    return categories.find(rows)[1] & find_racks(rows)[1]
+
+
 def _stands_on_counter(rows):
     bottom = rows[..., ELEVATION] - rows[..., HEIGHT] / 2
     return ((bottom - COUNTER_HEIGHT).abs() < 1e-5) & (rows[..., IS_OBJECT] > 0)
 
 
-def test_prompt_and_situation_are_relabelled_alike(pairs, categories):
-    relabelled = relabel(pairs, categories, np.random.default_rng(0))
+def test_prompt_and_situation_are_relabelled_alike(pairs, categories, stands):
+    relabelled = relabel(pairs, categories, stands, np.random.default_rng(0))
     seen = [{} for _ in pairs.prompts]
     is_pick = ~(pairs.sets[..., IS_PLACE] > 0).any(dim=1)
     for g, sets, new in (

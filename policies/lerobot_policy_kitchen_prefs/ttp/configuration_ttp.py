@@ -26,7 +26,8 @@ class TTPConfig(PreTrainedConfig):
         prompt_tokens: "states" makes the prompt's tokens from all rows of all decisions, with an
             ACT token after each (the paper); "chosen" from the chosen row of each decision alone,
             some forty tokens instead of a thousand.
-        relabel: Whether training permutes the categories, in prompt and situation together.
+        relabel: Whether training permutes the categories, in prompt and situation together, and
+            lets dishes stand in the racks as their new category does.
         rounds: With how many prompts each pick decision of a batch is paired.
         noise: The share of training situations that are seen as noisily as on the split `noisy`.
         dim_pose: Size of the pose embedding.
@@ -54,7 +55,7 @@ class TTPConfig(PreTrainedConfig):
         pointer: "inputs" compares the ACT token's output with the embeddings of the rows (the
             paper); "outputs" with learned projections of the decoder's outputs at the rows.
         geometric_attention: Whether attention also sees how alike and how near instances are.
-        clashes: Whether a small network judges, pair by pair, what stands in the way of a place.
+        clashes: Whether learned shapes alone say which places the objects of a set block.
         failures: Whether the network sees which rows it has just chosen in vain.
         dtype: "float32", or "bfloat16" for LeRobot's mixed precision in training.
     """

@@ -26,6 +26,7 @@ from .prompts import tokens_of_prompts
 from .relabelling import relabel
 from .sets import choosable, chosen_rows, is_place_decision, of_like_length
 from .situations import Situations
+from .stands import Stands
 
 
 class TTPPolicy(PreTrainedPolicy):
@@ -57,6 +58,7 @@ class TTPPolicy(PreTrainedPolicy):
             chosen_only = config.prompt_tokens == "chosen"
             self.demonstrations = Demonstrations.read(dataset_meta, chosen_only)
             self.categories = Categories.of(self.demonstrations)
+            self.stands = Stands.of(self.demonstrations, self.categories)
         self.reset()
 
     def get_optim_params(self) -> list[nn.Parameter]:
@@ -125,7 +127,7 @@ class TTPPolicy(PreTrainedPolicy):
         )
         failed = torch.zeros(pairs.sets.shape[:2], dtype=torch.bool, device=pairs.sets.device)
         if self.training and self.config.relabel:
-            pairs = relabel(pairs, self.categories, generator)
+            pairs = relabel(pairs, self.categories, self.stands, generator)
         if self.training and self.config.failures:
             failed = invent_failures(pairs, self.categories, generator)
         if self.training and self.config.noise:

@@ -4,14 +4,14 @@ import torch
 import torch.nn.functional as F
 from torch import Tensor, nn
 
-from kitchen_prefs.instances import COLUMNS, DECISION, EXTENTS, IS_OBJECT, POSITION
+from kitchen_prefs.instances import COLUMNS, DECISION, EXTENTS, IS_OBJECT, IS_PLACE, POSITION
 
 from .attention import Tokens
 from .clashes import Clashes
 from .configuration_ttp import ATTRIBUTES, TTPConfig
 from .encoders import InstanceEncoder
 from .pointers import make_pointer
-from .sets import is_real
+from .sets import choosable, is_place_decision, is_real
 from .situations import Situations
 from .slot_attention import SlotAttention
 from .transformer import DecoderLayer, EncoderLayer
@@ -69,7 +69,7 @@ class TTPNetwork(nn.Module):
         rows = torch.cat([situations.sets, situations.history], dim=1)  # (B, N + H, 13)
         act = rows.new_zeros(len(rows), 1, rows.shape[-1])
         shown = hide(torch.cat([rows, act], dim=1), self.hidden_of_situations)
-        inputs = self._embed(shown, F.pad(is_real(rows), (0, 1), value=True))
+        inputs = self._embed(shown, F.pad(self._looks_at(rows), (0, 1), value=True))
         count = situations.sets.shape[1]
         tokens = inputs
         if self.failures:
@@ -80,10 +80,24 @@ class TTPNetwork(nn.Module):
         outputs = self.decoder_norm(tokens.features)  # (B, N + H + 1, d)
         scores = self.pointer(outputs[:, -1], inputs.features[:, :count], outputs[:, :count])
         if self.clashes:
-            scores = scores - self.clashes(shown[:, :count])
+            free = self.clashes(shown[:, :count])  # (B, N), log-probabilities
+            # Added, they teach shapes even where what is surely blocked lies at the bottom.
+            scores = free + lowered(scores, 1 - free.exp(), situations)
         if self.failures:
-            scores = self.failures.lower(scores, situations, outputs[:, :count])
+            shares = self.failures.shares(outputs[:, :count], situations)
+            scores = lowered(scores, shares, situations)
         return scores
+
+    def _looks_at(self, rows: Tensor) -> Tensor:
+        """Which rows, (B, N, 13), the decoder's attention looks at, (B, N) bool.
+
+        Where places are chosen, clashes alone judge objects. A decoder that saw them, too, would
+        know by heart which dishes of the training preferences bar which places.
+        """
+        if not self.clashes:
+            return is_real(rows)
+        is_place_set = is_place_decision(rows)[:, None]  # (B, 1)
+        return (rows[..., IS_PLACE] > 0).where(is_place_set, is_real(rows))
 
     def _embed(self, rows: Tensor, mask: Tensor) -> Tokens:
         geometry = rows[..., [*range(EXTENTS.start, POSITION.stop), IS_OBJECT]]  # (B, N, 7)
@@ -103,24 +117,28 @@ class FailedRows(nn.Module):
         """Mark tokens, those of (B, N) bool, so that all others know, too."""
         return tokens.with_features(tokens.features + failed[..., None] * self.marker)
 
-    def lower(self, scores: Tensor, situations: Situations, outputs: Tensor) -> Tensor:
-        """Let scores fall towards the lowest of their set, as far as the gate says.
+    def shares(self, outputs: Tensor, situations: Situations) -> Tensor:
+        """How far each row's score falls, by the decoder's outputs, (B, N, d) -> (B, N)."""
+        return situations.failed * self.gate(outputs)[..., 0].sigmoid()
 
-        A penalty that is added could not outdo the certainty with which a row was chosen wrongly,
-        because in training such rows are rare.
 
-        Args:
-            scores: The scores, (B, N).
-            situations: What has failed in them.
-            outputs: The decoder's outputs at the rows, (B, N, d).
+def lowered(scores: Tensor, shares: Tensor, situations: Situations) -> Tensor:
+    """Let scores fall towards the lowest of their set.
 
-        Returns:
-            The scores, (B, N).
-        """
-        gate = self.gate(outputs)[..., 0].sigmoid()  # (B, N)
-        real = scores.detach().masked_fill(~is_real(situations.sets), torch.inf)  # (B, N)
-        lowest = real.amin(dim=1, keepdim=True) - 1  # (B, 1)
-        return scores.where(~situations.failed, scores + gate * (lowest - scores))
+    What is subtracted does not outdo the certainty with which a row was chosen wrongly, or how near
+    to the corner a blocked place is; a fall to the bottom does.
+
+    Args:
+        scores: The scores, (B, N).
+        shares: How far each falls, from 0, not at all, to 1, below all that may be chosen, (B, N).
+        situations: What is scored.
+
+    Returns:
+        The scores, (B, N).
+    """
+    candidates = scores.detach().masked_fill(~choosable(situations.sets), torch.inf)  # (B, N)
+    lowest = candidates.amin(dim=1, keepdim=True) - 1  # (B, 1)
+    return scores + shares * (lowest - scores)
 
 
 def final_norm(config: TTPConfig) -> nn.Module:

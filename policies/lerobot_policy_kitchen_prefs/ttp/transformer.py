@@ -9,7 +9,7 @@ from .configuration_ttp import TTPConfig
 
 # Where geometric attention starts, head by head. Two extents that differ by 5 cm, as those of most
 # categories do, cost a score of 4; two positions 20 cm apart cost 2.4, or 12 where a head looks for
-# the nearest objects, the dishes that block a placement.
+# the nearest objects.
 ALIKE = (1500.0, 0.0, 0.0)
 NEAR = (0.0, 60.0, 0.0)
 NEAREST_OBJECTS = (0.0, 300.0, 10.0)
