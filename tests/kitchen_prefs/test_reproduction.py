@@ -180,7 +180,7 @@ def test_a_run_with_other_settings_is_refused(tmp_path, lerobot_train):
     lerobot_train(20)
     train(BASE, 640, tmp_path)
     with pytest.raises(ValueError, match="delete it or move it elsewhere"):
-        train(Training("base", overrides=("--policy.noise=0",)), 640, tmp_path)
+        train(Training("base", overrides=("--policy.rounds=1",)), 640, tmp_path)
 
 
 def test_a_comment_in_the_recipe_is_no_other_setting(tmp_path, lerobot_train, monkeypatch):

@@ -148,7 +148,7 @@ def test_a_run_that_somebody_else_began_is_left_alone(machine, step):
     [
         ({"steps": 200}, "steps"),
         ({"batch_size": 8, "optimizer": None}, "optimizer.type and .* and batch_size"),
-        ({"policy": config_of("ttp_plus")["policy"] | {"noise": 0.1}}, "policy.noise"),
+        ({"policy": config_of("ttp_plus")["policy"] | {"recognise": False}}, "policy.recognise"),
     ],
 )
 def test_a_finished_run_with_other_settings_is_not_the_recipes(machine, told, differing):

@@ -8,7 +8,7 @@ from kitchen_prefs.demonstrations import demonstrate, prompt_of
 from kitchen_prefs.instances import IS_OBJECT, IS_PLACE
 from kitchen_prefs.sessions import make_session
 from lerobot_policy_kitchen_prefs.ttp.categories import Categories
-from lerobot_policy_kitchen_prefs.ttp.demonstrations import Demonstrations
+from lerobot_policy_kitchen_prefs.ttp.demonstrations import PLACE, Demonstrations
 from lerobot_policy_kitchen_prefs.ttp.pairing import make_pairs
 from lerobot_policy_kitchen_prefs.ttp.sets import chosen_rows
 from lerobot_policy_kitchen_prefs.ttp.stands import Stands
@@ -24,7 +24,10 @@ def demonstrations(sessions):
     rows = [prompt_of(session) for session in sessions]
     rows = [prompt[prompt[:, IS_OBJECT] + prompt[:, IS_PLACE] > 0] for prompt in rows]
     labels = np.array([session.label for session in sessions])
-    return Demonstrations(np.concatenate(rows), np.array([len(r) for r in rows]), labels)
+    lengths = np.array([len(r) for r in rows])
+    rows = np.concatenate(rows)
+    places = np.unique(rows[rows[:, IS_PLACE] > 0][:, PLACE], axis=0)
+    return Demonstrations(rows, lengths, labels, places)
 
 
 @pytest.fixture(scope="session")

@@ -47,9 +47,9 @@ COMPACT = {
     "situation_time": False,
     "time_encoding": "fourier",
     "geometric_attention": True,
-    "noise": 0.3,
     "clashes": True,
     "failures": True,
+    "recognise": True,
 }
 OTHER_ENCODINGS = {"pose_encoding": "linear", "extents_encoding": "label"}
 BOTH = pytest.mark.parametrize("settings", [PAPER, COMPACT], ids=["paper", "compact"])
@@ -394,7 +394,6 @@ def test_features_that_do_not_fit_are_named(inputs, output):
         {"dtype": "float16"},
         {"n_heads": 3},
         {"rounds": 0},
-        {"noise": 1.5},
         {"context_history": -1},
         {"hidden": ["colour"]},
     ],

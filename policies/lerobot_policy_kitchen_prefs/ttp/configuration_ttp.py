@@ -29,7 +29,6 @@ class TTPConfig(PreTrainedConfig):
         relabel: Whether training permutes the categories, in prompt and situation together, and
             lets dishes stand in the racks as their new category does.
         rounds: With how many prompts each pick decision of a batch is paired.
-        noise: The share of training situations that are seen as noisily as on the split `noisy`.
         dim_pose: Size of the pose embedding.
         dim_extents: Size of the category embedding.
         dim_time: Size of the time embedding.
@@ -57,6 +56,8 @@ class TTPConfig(PreTrainedConfig):
         geometric_attention: Whether attention also sees how alike and how near instances are.
         clashes: Whether learned shapes alone say which places the objects of a set block.
         failures: Whether the network sees which rows it has just chosen in vain.
+        recognise: Whether dishes that are seen noisily are taken for the known ones that they
+            resemble most.
         dtype: "float32", or "bfloat16" for LeRobot's mixed precision in training.
     """
 
@@ -70,7 +71,6 @@ class TTPConfig(PreTrainedConfig):
     prompt_tokens: str = "states"
     relabel: bool = False
     rounds: int = 1
-    noise: float = 0.0
 
     # Architecture: 128 + 64 + 32 + 32 = 256 (paper, appendix "Training").
     dim_pose: int = 128
@@ -99,6 +99,7 @@ class TTPConfig(PreTrainedConfig):
     geometric_attention: bool = False
     clashes: bool = False
     failures: bool = False
+    recognise: bool = False
     dtype: str = "float32"
 
     # Training preset (paper, appendix "Training"). The paper names no gradient clipping;
@@ -130,15 +131,13 @@ class TTPConfig(PreTrainedConfig):
             )
         if self.context_history < 0:
             raise ValueError("context_history counts decisions; it is at least 0.")
-        if self.context_history and (self.relabel or self.noise or not self.situation_time):
+        if self.context_history and (self.relabel or not self.situation_time):
             raise ValueError(
-                "With a context_history, relabel and noise must be off, as they change the present "
-                "alone, and situation_time on, as it tells the past from the present."
+                "With a context_history, relabel must be off, as it changes the present alone, and "
+                "situation_time on, as it tells the past from the present."
             )
         if self.dim % self.n_heads:
             raise ValueError(f"{self.n_heads} heads cannot share {self.dim} dimensions equally.")
-        if not 0 <= self.noise <= 1:
-            raise ValueError(f"noise is a share, from 0 to 1, not {self.noise}.")
         if self.rounds < 1:
             raise ValueError("rounds counts the prompts of a pick decision; it is at least 1.")
 

@@ -7,10 +7,11 @@ import pyarrow as pa
 from lerobot.datasets import LeRobotDataset, LeRobotDatasetMetadata
 
 from kitchen_prefs.environment_config import OBS_INSTANCES
-from kitchen_prefs.instances import COLUMNS, IS_OBJECT, IS_PLACE, PROMPT_COLUMNS
+from kitchen_prefs.instances import COLUMNS, EXTENTS, IS_OBJECT, IS_PLACE, POSE, PROMPT_COLUMNS
 
 PREFERENCE = "preference"
 CHOSEN_INDEX = "chosen_index"
+PLACE = slice(EXTENTS.start, POSE.stop)  # the columns of a place: the dish's extents, then the pose
 
 
 class Demonstrations:
@@ -20,18 +21,23 @@ class Demonstrations:
         rows: The rows of all decisions of all episodes, (R, 14) float32.
         preference: The preference's label of each episode, (E,) int64. It pairs prompts with
             situations; no network sees it.
+        places: All different places for dishes, chosen or not: extents and pose, (K, 10) float32.
     """
 
-    def __init__(self, rows: np.ndarray, lengths: np.ndarray, preference: np.ndarray) -> None:
+    def __init__(
+        self, rows: np.ndarray, lengths: np.ndarray, preference: np.ndarray, places: np.ndarray
+    ) -> None:
         """Take the episodes' rows.
 
         Args:
             rows: The rows of all decisions of all episodes, chosen ones marked, (R, 14) float32.
             lengths: The number of rows of each episode, (E,) int.
             preference: The preference's label of each episode, (E,) int64.
+            places: All different places for dishes, (K, 10) float32.
         """
         self.rows = rows
         self.preference = preference
+        self.places = places
         self._of_episode = np.split(rows, np.cumsum(lengths)[:-1])
 
     @classmethod
@@ -64,7 +70,8 @@ class Demonstrations:
         rows = np.concatenate([sets[kept], marks[kept][:, None]], axis=1, dtype=np.float32)
         episodes, first = np.unique(episode, return_index=True)
         lengths = np.bincount(episode, weights=kept.sum(axis=1)).astype(int)[episodes]
-        return cls(rows, lengths, preference[first])
+        places = np.unique(sets[sets[..., IS_PLACE] > 0][:, PLACE], axis=0)
+        return cls(rows, lengths, preference[first], places)
 
     def draw(self, preference: int, excluded: np.ndarray, generator: np.random.Generator) -> int:
         """Draw an episode of a preference.

@@ -21,8 +21,8 @@ from .failures import Failures, invent_failures
 from .history import History, objects_of
 from .network import TTPNetwork
 from .pairing import Pairs, make_pairs
-from .perception import see_noisily
 from .prompts import tokens_of_prompts
+from .recognition import Recognition
 from .relabelling import relabel
 from .sets import choosable, chosen_rows, is_place_decision, of_like_length
 from .situations import Situations
@@ -53,12 +53,15 @@ class TTPPolicy(PreTrainedPolicy):
         config.validate_features()
         self.config: TTPConfig = config
         self.network = TTPNetwork(config)
+        self.recognition = Recognition() if config.recognise else None
         self.demonstrations: Demonstrations | None = None
         if dataset_meta is not None:
             chosen_only = config.prompt_tokens == "chosen"
             self.demonstrations = Demonstrations.read(dataset_meta, chosen_only)
             self.categories = Categories.of(self.demonstrations)
             self.stands = Stands.of(self.demonstrations, self.categories)
+            if self.recognition:
+                self.recognition.remember(self.demonstrations)
         self.reset()
 
     def get_optim_params(self) -> list[nn.Parameter]:
@@ -130,8 +133,6 @@ class TTPPolicy(PreTrainedPolicy):
             pairs = relabel(pairs, self.categories, self.stands, generator)
         if self.training and self.config.failures:
             failed = invent_failures(pairs, self.categories, generator)
-        if self.training and self.config.noise:
-            pairs = see_noisily(pairs, self.config.noise, self.categories, generator)
         return pairs, Situations(pairs.sets, failed, history[pairs.sample])
 
     # Acting ----------------------------------------------------------------------------------
@@ -159,7 +160,8 @@ class TTPPolicy(PreTrainedPolicy):
             ValueError: If the sets or, on the first call, the prompts are missing.
         """
         self.eval()
-        sets = _observed(batch, OBS_INSTANCES)  # (B, N, 13)
+        observed = _observed(batch, OBS_INSTANCES)  # (B, N, 13)
+        sets = self.recognition(observed) if self.recognition else observed
         if self._preference is None:
             self._preference = self._encode(one_by_one(_observed(batch, OBS_PROMPT)))
         prompt_of = torch.arange(len(self._preference.features), device=sets.device)
@@ -168,9 +170,9 @@ class TTPPolicy(PreTrainedPolicy):
         situations = Situations(sets, self._failures.find(sets), self._history.recall(sets))
         scores = self._score(situations.select(asked), self._preference, prompt_of)  # (B V, M)
         opinions = scores.log_softmax(dim=1).unflatten(0, (len(sets), -1))  # (B, V, M)
-        choices = sets[environments, opinions.mean(dim=1).argmax(dim=1)]  # (B, 13)
-        self._failures.remember(choices)
-        return choices[:, POSE]
+        choices = opinions.mean(dim=1).argmax(dim=1)  # (B,)
+        self._failures.remember(sets[environments, choices])
+        return observed[environments, choices][:, POSE]
 
     def predict_action_chunk(self, batch: dict[str, Tensor], **_: Any) -> Tensor:
         """The action as a chunk of one, (B, 1, 7)."""
