@@ -58,17 +58,16 @@ class Recognition(nn.Module):
         places = self.places[self.places.any(dim=1)]  # (K, 10)
         if len(places) == 0:
             return sets
-        kinds, kind_of_place = places[:, EXTENTS].unique(dim=0, return_inverse=True)  # (C, 3), (K,)
-        relative = (sets[..., None, EXTENTS] / kinds).clamp(min=1e-6).log().abs()  # (B, N, C, 3)
-        off, kind = relative.amax(dim=-1).min(dim=-1)  # (B, N) each
+        extents, category_of_place = places[:, EXTENTS].unique(dim=0, return_inverse=True)
+        ratios = sets[..., None, EXTENTS] / extents  # (B, N, C, 3)
+        off, category = ratios.clamp(min=1e-6).log().abs().amax(dim=-1).min(dim=-1)  # (B, N) each
         is_known = (off < UNKNOWN_EXTENTS)[..., None]  # (B, N, 1)
-        distance = torch.cdist(  # a metre in space counts as a unit of the quaternion
+        distance = torch.cdist(  # a unit of the quaternion counts as a metre
             sets[..., POSE], places[:, POSE], compute_mode="donot_use_mm_for_euclid_dist"
-        )  # (B, N, K)
-        of_kind = kind_of_place == kind[..., None]
-        off, place = distance.masked_fill(~of_kind, torch.inf).min(dim=-1)  # (B, N) each
-        stands = (off < UNKNOWN_POSE)[..., None] & is_known
+        ).masked_fill(category_of_place != category[..., None], torch.inf)  # (B, N, K)
+        off, place = distance.min(dim=-1)  # (B, N) each
+        stands_there = is_known & (off < UNKNOWN_POSE)[..., None]  # (B, N, 1)
         recognised = sets.clone()
-        recognised[..., EXTENTS] = kinds[kind].where(is_known, sets[..., EXTENTS])
-        recognised[..., POSE] = places[place][..., POSE].where(stands, sets[..., POSE])
+        recognised[..., EXTENTS] = extents[category].where(is_known, sets[..., EXTENTS])
+        recognised[..., POSE] = places[place][..., POSE].where(stands_there, sets[..., POSE])
         return recognised
