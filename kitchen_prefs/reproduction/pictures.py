@@ -13,6 +13,7 @@ PACKING_EFFICIENCY = "packing efficiency PE (share of the expert's)"
 AXES = {
     "PE": PACKING_EFFICIENCY,
     "PE, other prompt": PACKING_EFFICIENCY,
+    "ED_c": "likeness to the expert's decisions ED_c",
     "Category accuracy": "category accuracy (share of decisions)",
     "Pick accuracy": "category accuracy (share of pick decisions)",
 }
