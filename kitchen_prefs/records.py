@@ -107,7 +107,10 @@ def _check_conditions(path: Path, conditions: Conditions) -> None:
     there = _read_header(header, way_out)
     differing = [name for name, value in asdict(conditions).items() if there.get(name) != value]
     if differing:
-        raise ValueError(f"{path} holds episodes with another {' and '.join(differing)}; {way_out}")
+        raise ValueError(
+            f"{path} holds episodes of another policy or under other conditions: another "
+            f"{' and '.join(differing)}; {way_out}"
+        )
 
 
 def _read_header(header: Path, way_out: str) -> dict:

@@ -98,7 +98,7 @@ def _next_steps(checkpoint: Path) -> str:
     return f"""
 Next, on preferences and numbers of dishes that training has not seen; and a longer training:
   uv run kitchen-prefs evaluate --policy.path={checkpoint} \\
-    --split=unseen_both --out=outputs/ttp_quick
+    --split=unseen_both --out=outputs/quickstart/unseen_both
   uv run lerobot-train --config_path={recipe_file(RECIPE)} \\
     --steps=4000 --output_dir=outputs/ttp_longer
 """

@@ -99,5 +99,5 @@ def _run(command: list[str], log: Path) -> int:
                 bar.total = int(progress.group(2))
                 bar.update(int(progress.group(1)) - bar.n)
             if said := PROGRESS.sub("", line).strip():  # what is logged follows on the bar's line
-                file.write(f"{said}\n")
+                print(said, file=file, flush=True)
     return process.wait()

@@ -6,9 +6,10 @@ from pathlib import Path
 import altair as alt
 
 from kitchen_prefs.files import whole_file
+from kitchen_prefs.reproduction.policies import RECIPE
 from kitchen_prefs.reproduction.table import Curves, Table
 
-OURS = "our kitchen"
+OURS = f"{RECIPE}, our kitchen"
 PACKING_EFFICIENCY = "packing efficiency PE (share of the expert's)"
 AXES = {
     "PE": PACKING_EFFICIENCY,
@@ -110,7 +111,7 @@ def _curves(curves: Curves, facts: dict) -> alt.FacetChart:
     colours = alt.Scale(domain=recipes, range=COLOURS[: len(recipes)])
     share = alt.Scale(domain=(0, 1))
     base = alt.Chart().encode(
-        x=alt.X("minutes:Q", title="minutes of training", scale=alt.Scale(type="log")),
+        x=alt.X("minutes:Q", title="minutes of training", scale=alt.Scale(type="log", nice=False)),
         color=alt.Color("recipe:N", title=None, scale=colours),
     )
     bands = base.mark_area(opacity=0.25).encode(

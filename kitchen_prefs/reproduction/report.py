@@ -142,7 +142,7 @@ def _cell(interval: dict[str, float]) -> str:
 
 
 def _share(interval: dict[str, float], whole: float) -> str:
-    return f"{interval['mean'] / whole:.0%}" if whole else "-"
+    return f"{interval['mean'] / whole:.0%}" if whole > 0 and interval["mean"] >= 0 else "-"
 
 
 def _number(value: float | None) -> str:
