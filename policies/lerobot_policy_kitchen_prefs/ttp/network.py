@@ -11,7 +11,7 @@ from .clashes import Clashes
 from .configuration_ttp import ATTRIBUTES, TTPConfig
 from .encoders import InstanceEncoder
 from .pointers import make_pointer
-from .sets import choosable, is_place_decision, is_real
+from .sets import choosable, indices_of, is_place_decision, is_real, take
 from .situations import Situations
 from .slot_attention import SlotAttention
 from .transformer import DecoderLayer, EncoderLayer
@@ -69,15 +69,12 @@ class TTPNetwork(nn.Module):
         rows = torch.cat([situations.sets, situations.history], dim=1)  # (B, N + H, 13)
         act = rows.new_zeros(len(rows), 1, rows.shape[-1])
         shown = hide(torch.cat([rows, act], dim=1), self.hidden_of_situations)
-        inputs = self._embed(shown, F.pad(self._looks_at(rows), (0, 1), value=True))
+        inputs = tokens = self._embed(shown, F.pad(self._looks_at(rows), (0, 1), value=True))
         count = situations.sets.shape[1]
-        tokens = inputs
         if self.failures:
             marks = F.pad(situations.failed, (0, shown.shape[1] - count))  # (B, N + H + 1)
             tokens = self.failures.mark(tokens, marks)
-        for layer in self.decoder:
-            tokens = layer(tokens, preference, prompt_of)
-        outputs = self.decoder_norm(tokens.features)  # (B, N + H + 1, d)
+        outputs = self._decode(tokens, preference, prompt_of)  # (B, N + H + 1, d)
         scores = self.pointer(outputs[:, -1], inputs.features[:, :count], outputs[:, :count])
         if self.clashes:
             free = self.clashes(shown[:, :count])  # (B, N), log-probabilities
@@ -87,6 +84,16 @@ class TTPNetwork(nn.Module):
             shares = self.failures.shares(outputs[:, :count], situations)
             scores = lowered(scores, shares, situations)
         return scores
+
+    def _decode(self, tokens: Tokens, preference: Tokens, prompt_of: Tensor) -> Tensor:
+        """The decoder's outputs at B sets of N tokens, zeros where it does not look, (B, N, d)."""
+        index, mask = indices_of(tokens.mask)  # (B, M) each
+        looked_at = Tokens(take(tokens.features, index), mask, take(tokens.geometry, index))
+        for layer in self.decoder:
+            looked_at = layer(looked_at, preference, prompt_of)
+        outputs = self.decoder_norm(looked_at.features) * mask[..., None]  # (B, M, d)
+        everywhere = outputs.new_zeros(tokens.features.shape)
+        return everywhere.scatter(1, index[..., None].expand_as(outputs), outputs)
 
     def _looks_at(self, rows: Tensor) -> Tensor:
         """Which rows, (B, N, 13), the decoder's attention looks at, (B, N) bool.

@@ -79,8 +79,26 @@ def keep(sets: Tensor, kept: Tensor) -> tuple[Tensor, Tensor]:
     Returns:
         The kept rows, (B, M, D), M the largest number of them, and which are real, (B, M) bool.
     """
+    index, mask = indices_of(kept)
+    return take(sets, index), mask
+
+
+def indices_of(kept: Tensor) -> tuple[Tensor, Tensor]:
+    """Where the kept rows of each set stand.
+
+    Args:
+        kept: The rows to keep, (B, N) bool.
+
+    Returns:
+        Their indices in their order, then others, (B, M) int64, M the largest number of kept rows,
+        and which are those of kept rows, (B, M) bool.
+    """
     counts = kept.sum(dim=1)  # (B,)
     longest = int(counts.max())
-    order = kept.logical_not().byte().argsort(dim=1, stable=True)[:, :longest]  # (B, M)
-    mask = torch.arange(longest, device=sets.device) < counts[:, None]  # (B, M)
-    return sets.gather(1, order[..., None].expand(-1, -1, sets.shape[-1])), mask
+    index = kept.logical_not().byte().argsort(dim=1, stable=True)[:, :longest]  # (B, M)
+    return index, torch.arange(longest, device=kept.device) < counts[:, None]
+
+
+def take(sets: Tensor, index: Tensor) -> Tensor:
+    """The rows of sets, (B, N, D), at the indices, (B, M), of each: (B, M, D)."""
+    return sets.gather(1, index[..., None].expand(-1, -1, sets.shape[-1]))
