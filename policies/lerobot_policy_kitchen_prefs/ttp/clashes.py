@@ -21,9 +21,8 @@ SHARPNESS = 500.0  # 1 / m; shapes that share 2 mm clash with a probability of .
 # A shape starts as the wall and the bottom of an elliptical cylinder: the radius and the height of
 # rings of six spheres, in halves of the extents.
 RINGS = ((0.9, -0.9), (0.9, 0.0), (0.9, 0.9), (0.45, -0.9))
-PACE = (
-    6.0  # of the shapes' learning, which else lags behind; saved weights are multiplied by it, too
-)
+# Of the shapes' learning, which else lags behind; saved weights are multiplied by it, too.
+PACE = 6.0
 WALL = 0.004  # m; the radius of the spheres, as dishes are some 8 mm thick
 
 

@@ -3,6 +3,7 @@
 from typing import Self
 
 import numpy as np
+import pandas as pd
 import pyarrow as pa
 from lerobot.datasets import LeRobotDataset, LeRobotDatasetMetadata
 
@@ -70,8 +71,8 @@ class Demonstrations:
         rows = np.concatenate([sets[kept], marks[kept][:, None]], axis=1, dtype=np.float32)
         episodes, first = np.unique(episode, return_index=True)
         lengths = np.bincount(episode, weights=kept.sum(axis=1)).astype(int)[episodes]
-        places = np.unique(sets[sets[..., IS_PLACE] > 0][:, PLACE], axis=0)
-        return cls(rows, lengths, preference[first], places)
+        places = pd.DataFrame(sets[sets[..., IS_PLACE] > 0][:, PLACE]).drop_duplicates()
+        return cls(rows, lengths, preference[first], np.unique(places, axis=0))
 
     def draw(self, preference: int, excluded: np.ndarray, generator: np.random.Generator) -> int:
         """Draw an episode of a preference.
