@@ -123,8 +123,8 @@ def test_lerobot_eval_gives_the_expert_full_success(home):
         "--env.type=kitchen_prefs",
         "--env.track=privileged",
         "--env.task=unseen_both",
-        "--eval.n_episodes=3",
-        "--eval.batch_size=2",
+        "--eval.n_episodes=5",
+        "--eval.batch_size=3",
         f"--output_dir={home / 'expert'}",
     )
     info = json.loads((home / "expert" / "eval_info.json").read_text())
