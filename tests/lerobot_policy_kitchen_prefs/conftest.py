@@ -7,10 +7,10 @@ import torch
 from kitchen_prefs.demonstrations import demonstrate, prompt_of
 from kitchen_prefs.instances import IS_OBJECT, IS_PLACE
 from kitchen_prefs.sessions import make_session
-from lerobot_policy_kitchen_prefs.ttp.categories import Categories
-from lerobot_policy_kitchen_prefs.ttp.demonstrations import PLACE, Demonstrations
+from lerobot_policy_kitchen_prefs.instances.categories import Categories
+from lerobot_policy_kitchen_prefs.instances.demonstrations import PLACE, Demonstrations
+from lerobot_policy_kitchen_prefs.instances.sets import chosen_rows
 from lerobot_policy_kitchen_prefs.ttp.pairing import make_pairs
-from lerobot_policy_kitchen_prefs.ttp.sets import chosen_rows
 from lerobot_policy_kitchen_prefs.ttp.stands import Stands
 
 

@@ -19,10 +19,10 @@ from kitchen_prefs.instances import (
     POSITION,
 )
 from kitchen_prefs.sessions import make_session, prompt_session
+from lerobot_policy_kitchen_prefs.instances.sets import choosable, is_real
 from lerobot_policy_kitchen_prefs.ttp import TTPConfig, TTPPolicy
 from lerobot_policy_kitchen_prefs.ttp.configuration_ttp import ATTRIBUTES
 from lerobot_policy_kitchen_prefs.ttp.prompts import tokens_of_prompts
-from lerobot_policy_kitchen_prefs.ttp.sets import choosable, is_real
 from lerobot_policy_kitchen_prefs.ttp.situations import Situations
 
 NAME = "dishwasher-train-p2-d3-v1"  # two preferences, three demonstrations each

@@ -19,13 +19,13 @@ from kitchen_prefs.instances import (
 )
 from kitchen_prefs.observations import EXTENT_NOISE, POSITION_NOISE
 from kitchen_prefs.scene.layout import COUNTER_HEIGHT
+from lerobot_policy_kitchen_prefs.instances.sets import chosen_rows, is_real
 from lerobot_policy_kitchen_prefs.ttp import recognition as recognising
 from lerobot_policy_kitchen_prefs.ttp.attention import Attention, GeometricScores, Tokens
 from lerobot_policy_kitchen_prefs.ttp.prompts import tokens_of_prompts
 from lerobot_policy_kitchen_prefs.ttp.recognition import Recognition
 from lerobot_policy_kitchen_prefs.ttp.relabelling import relabel
 from lerobot_policy_kitchen_prefs.ttp.scheduler import ExponentialDecaySchedulerConfig
-from lerobot_policy_kitchen_prefs.ttp.sets import chosen_rows, is_real
 from lerobot_policy_kitchen_prefs.ttp.stands import find_racks
 
 HEIGHT, ELEVATION = 2, 5  # columns

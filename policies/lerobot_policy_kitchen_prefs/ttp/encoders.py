@@ -3,7 +3,7 @@
 e_i = time || category || pose || marker
 """
 
-from math import log, pi
+from math import log
 
 import numpy as np
 import torch
@@ -13,14 +13,15 @@ from kitchen_prefs.instances import DECISION, EXTENTS, IS_OBJECT, IS_PLACE, POSI
 from kitchen_prefs.observations import DOOR_ROWS, RACK_ROWS
 from kitchen_prefs.observations import EXTENTS as DISH_EXTENTS
 
+from ..instances.waves import (
+    EXTENTS_RANGE,
+    FREQUENCIES,
+    POSITION_RANGE,
+    QUATERNION_RANGE,
+    FourierFeatures,
+)
 from .configuration_ttp import TTPConfig
 
-# Fourier features: waves whose lengths halve, `FREQUENCIES` of them for each number; sine and
-# cosine make the paper's 16 features. The longest wave spans the range of the numbers once.
-FREQUENCIES = 8
-POSITION_RANGE = 4.0  # m, more than the counter's length; the shortest wave is 3 cm
-QUATERNION_RANGE = 2.0  # -1 to 1
-EXTENTS_RANGE = 1.0  # m; the shortest wave is 8 mm, so that 2.0 and 2.6 cm high plates differ
 MAX_DECISIONS = 256  # more than the longest episode has, `environment.MAX_EPISODE_STEPS`
 
 
@@ -49,23 +50,6 @@ class InstanceEncoder(nn.Module):
             ],
             dim=-1,
         )
-
-
-class FourierFeatures(nn.Module):
-    """Sines and cosines of each number at wave lengths that halve (NeRF's encoding)."""
-
-    frequencies: Tensor
-
-    def __init__(self, longest: float) -> None:
-        """Make the frequencies, from the longest wave's length in the numbers' unit."""
-        super().__init__()
-        frequencies = 2 * pi / longest * 2.0 ** torch.arange(FREQUENCIES)
-        self.register_buffer("frequencies", frequencies, persistent=False)
-
-    def forward(self, numbers: Tensor) -> Tensor:
-        """Expand (..., D) to (..., D * 2 * FREQUENCIES)."""
-        phases = (numbers[..., None] * self.frequencies).flatten(-2)  # (..., D * F)
-        return torch.cat([phases.sin(), phases.cos()], dim=-1)  # (..., D * 2F)
 
 
 class PoseEncoder(nn.Module):

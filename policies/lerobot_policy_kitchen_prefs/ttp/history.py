@@ -11,7 +11,7 @@ from torch import Tensor
 
 from kitchen_prefs.instances import IS_OBJECT
 
-from .sets import keep
+from ..instances.sets import keep
 
 
 class History:

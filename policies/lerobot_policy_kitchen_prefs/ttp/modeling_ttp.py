@@ -13,18 +13,18 @@ from torch import Tensor, nn
 from kitchen_prefs.environment_config import OBS_INSTANCES, OBS_PROMPT
 from kitchen_prefs.instances import POSE, PROMPT_CAPACITY
 
+from ..instances.categories import Categories
+from ..instances.demonstrations import Demonstrations
+from ..instances.failures import Failures, invent_failures
+from ..instances.sets import choosable, chosen_rows, is_place_decision, of_like_length
 from .attention import Tokens
-from .categories import Categories
 from .configuration_ttp import TTPConfig
-from .demonstrations import Demonstrations
-from .failures import Failures, invent_failures
 from .history import History, objects_of
 from .network import TTPNetwork
 from .pairing import Pairs, make_pairs
 from .prompts import tokens_of_prompts
 from .recognition import Recognition
 from .relabelling import relabel
-from .sets import choosable, chosen_rows, is_place_decision, of_like_length
 from .situations import Situations
 from .stands import Stands
 
@@ -132,7 +132,7 @@ class TTPPolicy(PreTrainedPolicy):
         if self.training and self.config.relabel:
             pairs = relabel(pairs, self.categories, self.stands, generator)
         if self.training and self.config.failures:
-            failed = invent_failures(pairs, self.categories, generator)
+            failed = invent_failures(pairs.sets, pairs.targets, self.categories, generator)
         return pairs, Situations(pairs.sets, failed, history[pairs.sample])
 
     # Acting ----------------------------------------------------------------------------------

@@ -4,14 +4,15 @@ import torch
 import torch.nn.functional as F
 from torch import Tensor, nn
 
-from kitchen_prefs.instances import COLUMNS, DECISION, EXTENTS, IS_OBJECT, IS_PLACE, POSITION
+from kitchen_prefs.instances import COLUMNS, DECISION, EXTENTS, IS_OBJECT, POSITION
 
+from ..instances.clashes import Clashes, left_to_attention
+from ..instances.failures import FailedRows, lowered
+from ..instances.sets import indices_of, is_real, take
 from .attention import Tokens
-from .clashes import Clashes
 from .configuration_ttp import ATTRIBUTES, TTPConfig
 from .encoders import InstanceEncoder
 from .pointers import make_pointer
-from .sets import choosable, indices_of, is_place_decision, is_real, take
 from .situations import Situations
 from .slot_attention import SlotAttention
 from .transformer import DecoderLayer, EncoderLayer
@@ -69,20 +70,21 @@ class TTPNetwork(nn.Module):
         rows = torch.cat([situations.sets, situations.history], dim=1)  # (B, N + H, 13)
         act = rows.new_zeros(len(rows), 1, rows.shape[-1])
         shown = hide(torch.cat([rows, act], dim=1), self.hidden_of_situations)
-        inputs = tokens = self._embed(shown, F.pad(self._looks_at(rows), (0, 1), value=True))
+        seen = left_to_attention(rows) if self.clashes else is_real(rows)  # (B, N + H)
+        inputs = tokens = self._embed(shown, F.pad(seen, (0, 1), value=True))
         count = situations.sets.shape[1]
         if self.failures:
             marks = F.pad(situations.failed, (0, shown.shape[1] - count))  # (B, N + H + 1)
-            tokens = self.failures.mark(tokens, marks)
+            tokens = tokens.with_features(self.failures.mark(tokens.features, marks))
         outputs = self._decode(tokens, preference, prompt_of)  # (B, N + H + 1, d)
         scores = self.pointer(outputs[:, -1], inputs.features[:, :count], outputs[:, :count])
         if self.clashes:
             free = self.clashes(shown[:, :count])  # (B, N), log-probabilities
             # Added, they teach shapes even where what is surely blocked lies at the bottom.
-            scores = free + lowered(scores, 1 - free.exp(), situations)
+            scores = free + lowered(scores, 1 - free.exp(), situations.sets)
         if self.failures:
-            shares = self.failures.shares(outputs[:, :count], situations)
-            scores = lowered(scores, shares, situations)
+            shares = self.failures.shares(outputs[:, :count], situations.failed)
+            scores = lowered(scores, shares, situations.sets)
         return scores
 
     def _decode(self, tokens: Tokens, preference: Tokens, prompt_of: Tensor) -> Tensor:
@@ -95,57 +97,9 @@ class TTPNetwork(nn.Module):
         everywhere = outputs.new_zeros(tokens.features.shape)
         return everywhere.scatter(1, index[..., None].expand_as(outputs), outputs)
 
-    def _looks_at(self, rows: Tensor) -> Tensor:
-        """Which rows, (B, N, 13), the decoder's attention looks at, (B, N) bool.
-
-        Where places are chosen, clashes alone judge objects. A decoder that saw them, too, would
-        know by heart which dishes of the training preferences bar which places.
-        """
-        if not self.clashes:
-            return is_real(rows)
-        is_place_set = is_place_decision(rows)[:, None]  # (B, 1)
-        return (rows[..., IS_PLACE] > 0).where(is_place_set, is_real(rows))
-
     def _embed(self, rows: Tensor, mask: Tensor) -> Tokens:
         geometry = rows[..., [*range(EXTENTS.start, POSITION.stop), IS_OBJECT]]  # (B, N, 7)
         return Tokens(self.instances(rows), mask, geometry)
-
-
-class FailedRows(nn.Module):
-    """What the network makes of rows that were just chosen in vain."""
-
-    def __init__(self, dim: int) -> None:
-        """Make the mark, which begins as none, and the gate."""
-        super().__init__()
-        self.marker = nn.Parameter(torch.zeros(dim))
-        self.gate = nn.Linear(dim, 1)
-
-    def mark(self, tokens: Tokens, failed: Tensor) -> Tokens:
-        """Mark tokens, those of (B, N) bool, so that all others know, too."""
-        return tokens.with_features(tokens.features + failed[..., None] * self.marker)
-
-    def shares(self, outputs: Tensor, situations: Situations) -> Tensor:
-        """How far each row's score falls, by the decoder's outputs, (B, N, d) -> (B, N)."""
-        return situations.failed * self.gate(outputs)[..., 0].sigmoid()
-
-
-def lowered(scores: Tensor, shares: Tensor, situations: Situations) -> Tensor:
-    """Let scores fall towards the lowest of their set.
-
-    What is subtracted does not outdo the certainty with which a row was chosen wrongly, or how near
-    to the corner a blocked place is; a fall to the bottom does.
-
-    Args:
-        scores: The scores, (B, N).
-        shares: How far each falls, from 0, not at all, to 1, below all that may be chosen, (B, N).
-        situations: What is scored.
-
-    Returns:
-        The scores, (B, N).
-    """
-    candidates = scores.detach().masked_fill(~choosable(situations.sets), torch.inf)  # (B, N)
-    lowest = candidates.amin(dim=1, keepdim=True) - 1  # (B, 1)
-    return scores + shares * (lowest - scores)
 
 
 def final_norm(config: TTPConfig) -> nn.Module:

@@ -16,8 +16,8 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from .demonstrations import Demonstrations
-from .sets import is_place_decision
+from ..instances.demonstrations import Demonstrations
+from ..instances.sets import is_place_decision
 
 
 class Pairs(NamedTuple):

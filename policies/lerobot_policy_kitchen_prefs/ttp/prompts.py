@@ -17,7 +17,7 @@ from torch import Tensor
 
 from kitchen_prefs.instances import CHOSEN, COLUMNS, DECISION
 
-from .sets import is_real, keep
+from ..instances.sets import is_real, keep
 
 
 def tokens_of_prompts(prompts: Tensor, kind: str) -> tuple[Tensor, Tensor]:

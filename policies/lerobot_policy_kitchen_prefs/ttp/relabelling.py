@@ -21,9 +21,9 @@ from torch import Tensor
 from kitchen_prefs.instances import EXTENTS, IS_OBJECT, POSE, POSITION
 from kitchen_prefs.scene.layout import COUNTER_HEIGHT
 
-from .categories import TOLERANCE, Categories
+from ..instances.categories import TOLERANCE, Categories
+from ..instances.sets import is_place_decision
 from .pairing import Pairs
-from .sets import is_place_decision
 from .stands import Stands
 
 HEIGHT = EXTENTS.stop - 1  # the columns of the vertical extent and of the vertical position

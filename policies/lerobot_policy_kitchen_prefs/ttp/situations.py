@@ -4,7 +4,7 @@ from typing import NamedTuple, Self
 
 from torch import Tensor
 
-from .sets import is_real
+from ..instances.sets import is_real
 
 
 class Situations(NamedTuple):

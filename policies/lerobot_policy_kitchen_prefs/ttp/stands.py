@@ -9,8 +9,8 @@ from torch import Tensor
 from kitchen_prefs.instances import CHOSEN, IS_PLACE, POSE, POSITION
 from kitchen_prefs.scene.layout import COUNTER_Y, RACK_CLOSED
 
-from .categories import Categories
-from .demonstrations import Demonstrations
+from ..instances.categories import Categories
+from ..instances.demonstrations import Demonstrations
 
 RACKS = 2  # 0 the bottom one, 1 the top one
 

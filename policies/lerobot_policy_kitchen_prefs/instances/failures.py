@@ -8,13 +8,12 @@ expert did not choose may have been tried before.
 
 import numpy as np
 import torch
-from torch import Tensor
+from torch import Tensor, nn
 
 from kitchen_prefs.actions import METRES_PER_RADIAN
 from kitchen_prefs.instances import IS_PLACE, POSITION, QUATERNION
 
 from .categories import Categories
-from .pairing import Pairs
 from .sets import choosable
 
 # The nearest row to the last choice is the same instance if it is this near: perception errs by a
@@ -71,26 +70,65 @@ class Failures:
         return nearest & (distance < SAME)
 
 
-def invent_failures(pairs: Pairs, categories: Categories, generator: np.random.Generator) -> Tensor:
+def invent_failures(
+    sets: Tensor, targets: Tensor, categories: Categories, generator: np.random.Generator
+) -> Tensor:
     """Invent which rows have failed before the expert chose.
 
     Where the expert chose a place, a rack or the door, that choice has not failed before. A dish
     may have slipped from the hand.
 
     Args:
-        pairs: Prompts and situations, seen exactly.
+        sets: Sets, seen exactly, (B, N, 13).
+        targets: The rows that the expert chose, (B,) int64.
         categories: The categories of dishes.
         generator: Source of randomness.
 
     Returns:
-        Marks of the situations' rows, (S, N) bool.
+        Marks of the rows, (B, N) bool.
     """
-    sets, device = pairs.sets, pairs.sets.device
     chance = generator.random(sets.shape[:2], dtype=np.float32) < SHARE_OF_ROWS
     chance &= generator.random((len(sets), 1), dtype=np.float32) < SHARE_OF_SITUATIONS
-    situations = torch.arange(len(sets), device=device)
-    target = sets[situations, pairs.targets]  # (S, 13)
-    graspable = categories.find(target)[1] & (target[:, IS_PLACE] == 0)  # (S,)
+    situations = torch.arange(len(sets), device=sets.device)
+    target = sets[situations, targets]  # (B, 13)
+    graspable = categories.find(target)[1] & (target[:, IS_PLACE] == 0)  # (B,)
     may_fail = choosable(sets)
-    may_fail[situations, pairs.targets] = graspable
-    return torch.from_numpy(chance).to(device) & may_fail
+    may_fail[situations, targets] = graspable
+    return torch.from_numpy(chance).to(sets.device) & may_fail
+
+
+class FailedRows(nn.Module):
+    """What a network makes of rows that were just chosen in vain."""
+
+    def __init__(self, dim: int) -> None:
+        """Make the mark, which begins as none, and the gate."""
+        super().__init__()
+        self.marker = nn.Parameter(torch.zeros(dim))
+        self.gate = nn.Linear(dim, 1)
+
+    def mark(self, features: Tensor, failed: Tensor) -> Tensor:
+        """Mark rows' features, (..., d), those of (...) bool, so that all others know, too."""
+        return features + failed[..., None] * self.marker
+
+    def shares(self, outputs: Tensor, failed: Tensor) -> Tensor:
+        """How far each row's score falls, by the network's outputs, (..., d) -> (...)."""
+        return failed * self.gate(outputs)[..., 0].sigmoid()
+
+
+def lowered(scores: Tensor, shares: Tensor, sets: Tensor) -> Tensor:
+    """Let scores fall towards the lowest of their set.
+
+    What is subtracted does not outdo the certainty with which a row was chosen wrongly, or how near
+    to the corner a blocked place is; a fall to the bottom does.
+
+    Args:
+        scores: The scores, (B, N).
+        shares: How far each falls, from 0, not at all, to 1, below all that may be chosen, (B, N).
+        sets: What is scored, (B, N, 13).
+
+    Returns:
+        The scores, (B, N).
+    """
+    candidates = scores.detach().masked_fill(~choosable(sets), torch.inf)  # (B, N)
+    lowest = candidates.amin(dim=1, keepdim=True) - 1  # (B, 1)
+    return scores + shares * (lowest - scores)

@@ -14,6 +14,8 @@ from torch import Tensor, nn
 
 from kitchen_prefs.instances import EXTENTS, IS_OBJECT, IS_PLACE, POSITION, QUATERNION
 
+from .sets import is_place_decision, is_real
+
 # m; the largest dishes are 36 cm from corner to corner and touch at that distance at most. The door
 # and the racks are larger; they are in nobody's way.
 REACH = 0.4
@@ -66,6 +68,16 @@ class Clashes(nn.Module):
         turns = rotation(sets[..., QUATERNION])  # (B, N, 3, 3)
         centres = torch.einsum("bnxy,bnky->bnkx", turns, in_halves * extents[..., None, :] / 2)
         return sets[..., None, POSITION] + centres, WALL * learned[..., 3].clamp(max=2).exp()
+
+
+def left_to_attention(sets: Tensor) -> Tensor:
+    """Which rows, (B, N, 13), a network looks at beside `Clashes`, (B, N) bool.
+
+    Where places are chosen, clashes alone judge objects. Attention that saw them, too, would know
+    by heart which dishes of the training preferences bar which places.
+    """
+    is_place_set = is_place_decision(sets)[:, None]  # (B, 1)
+    return (sets[..., IS_PLACE] > 0).where(is_place_set, is_real(sets))
 
 
 def smallest_gaps(a: Tensor, a_radii: Tensor, b: Tensor, b_radii: Tensor) -> Tensor:

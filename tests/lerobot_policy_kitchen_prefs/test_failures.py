@@ -11,8 +11,8 @@ from kitchen_prefs import instances
 from kitchen_prefs.demonstrations import demonstrate
 from kitchen_prefs.instances import IS_OBJECT, IS_PLACE, POSE, POSITION
 from kitchen_prefs.sessions import make_session
-from lerobot_policy_kitchen_prefs.ttp.failures import Failures, invent_failures
-from lerobot_policy_kitchen_prefs.ttp.sets import choosable
+from lerobot_policy_kitchen_prefs.instances.failures import Failures, invent_failures
+from lerobot_policy_kitchen_prefs.instances.sets import choosable
 
 SEEDS = st.integers(0, 10_000)
 DECISIONS = 60
@@ -111,7 +111,7 @@ def test_a_success_in_one_episode_leaves_the_failures_of_the_others():
 @settings(max_examples=30, deadline=None)
 @given(seed=SEEDS)
 def test_invented_failures_are_choices_that_may_have_failed(pairs, categories, seed):
-    marks = invent_failures(pairs, categories, np.random.default_rng(seed))
+    marks = invent_failures(pairs.sets, pairs.targets, categories, np.random.default_rng(seed))
     assert not (marks & ~choosable(pairs.sets)).any()
     situations = torch.arange(len(pairs.sets))
     target = pairs.sets[situations, pairs.targets]
@@ -122,7 +122,9 @@ def test_invented_failures_are_choices_that_may_have_failed(pairs, categories, s
 
 def test_invented_failures_leave_some_situations_alone_and_spare_no_kind(pairs, categories):
     generator = np.random.default_rng(0)
-    marks = torch.stack([invent_failures(pairs, categories, generator) for _ in range(40)])
+    marks = torch.stack(
+        [invent_failures(pairs.sets, pairs.targets, categories, generator) for _ in range(40)]
+    )
     situations = torch.arange(len(pairs.sets))
     is_place = (pairs.sets[..., IS_PLACE] > 0).any(dim=1)
     assert (~marks.any(dim=-1)).float().mean() > 0.4

@@ -1,4 +1,4 @@
-"""The demonstrations of the data set that is trained on, in memory, to prompt with."""
+"""The demonstrations of the data set that is trained on, in memory."""
 
 from typing import Self
 
@@ -20,8 +20,8 @@ class Demonstrations:
 
     Attributes:
         rows: The rows of all decisions of all episodes, (R, 14) float32.
-        preference: The preference's label of each episode, (E,) int64. It pairs prompts with
-            situations; no network sees it.
+        preference: The preference's label of each episode, (E,) int64. On the standard track it
+            pairs prompts with situations, and no network sees it.
         places: All different places for dishes, chosen or not: extents and pose, (K, 10) float32.
     """
 
@@ -59,8 +59,8 @@ class Demonstrations:
         missing = sorted(set(wanted) - set(meta.features))
         if missing:
             raise ValueError(
-                f"The data set {meta.repo_id!r} has no column {missing[0]!r}, from which TTP takes "
-                "its prompts; train on a data set of kitchen_prefs."
+                f"The data set {meta.repo_id!r} has no column {missing[0]!r}, which demonstrations "
+                "have; train on a data set of kitchen_prefs."
             )
         frames = LeRobotDataset(meta.repo_id, root=meta.root).hf_dataset.with_format("arrow")
         table = frames.select_columns(wanted)[:]

@@ -14,7 +14,7 @@ from kitchen_prefs.instances import (
     POSITION,
     QUATERNION,
 )
-from lerobot_policy_kitchen_prefs.ttp.clashes import Clashes, rotation, smallest_gaps
+from lerobot_policy_kitchen_prefs.instances.clashes import Clashes, rotation, smallest_gaps
 
 SEEDS = st.integers(0, 10_000)
 CLOSE = {"atol": 1e-4, "rtol": 1e-4}
