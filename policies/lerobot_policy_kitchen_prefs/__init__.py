@@ -4,6 +4,6 @@ LeRobot imports this package because of its name; that registers the policies an
 """
 
 import kitchen_prefs.environment_config  # noqa: F401  registers --env.type=kitchen_prefs
-from lerobot_policy_kitchen_prefs import rules, ttp
+from lerobot_policy_kitchen_prefs import gnn, rules, ttp
 
-__all__ = ["rules", "ttp"]
+__all__ = ["gnn", "rules", "ttp"]

@@ -69,6 +69,22 @@ def chosen_rows(sets: Tensor, actions: Tensor) -> Tensor:
     return matches.int().argmax(dim=1)
 
 
+def accuracies(correct: Tensor, is_place: Tensor) -> dict[str, float]:
+    """How often B decisions are the expert's, for LeRobot's log.
+
+    Args:
+        correct: Whether each is, (B,) bool.
+        is_place: Which of them choose places, (B,) bool.
+
+    Returns:
+        The shares among picks and among places, where there are any.
+    """
+    kinds = {"pick": correct[~is_place], "place": correct[is_place]}
+    return {
+        f"{name}_accuracy": hits.float().mean().item() for name, hits in kinds.items() if len(hits)
+    }
+
+
 def keep(sets: Tensor, kept: Tensor) -> tuple[Tensor, Tensor]:
     """Move the kept rows of each set to its front, in their order, and cut the rest off.
 

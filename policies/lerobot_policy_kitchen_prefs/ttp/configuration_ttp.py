@@ -1,18 +1,15 @@
 """What can be chosen about TTP. The defaults are the paper's."""
 
-from collections.abc import Callable
 from dataclasses import dataclass, field
 
-from lerobot.configs import NormalizationMode, PolicyFeature, PreTrainedConfig
+from lerobot.configs import NormalizationMode, PreTrainedConfig
 from lerobot.optim import SGDConfig
-from lerobot.utils.constants import ACTION
 
-from kitchen_prefs.environment_config import OBS_INSTANCES
-from kitchen_prefs.instances import COLUMNS, DECISION, EXTENTS, POSE
+from kitchen_prefs.instances import DECISION, EXTENTS, POSE
 
+from ..instances.features import check_sets_and_poses
 from .scheduler import ExponentialDecaySchedulerConfig
 
-POSE_SIZE = 7  # position and quaternion
 # The columns of each attribute.
 ATTRIBUTES = {"pose": POSE, "category": EXTENTS, "time": slice(DECISION, DECISION + 1)}
 
@@ -165,8 +162,7 @@ class TTPConfig(PreTrainedConfig):
         Raises:
             ValueError: If a feature is missing or has another shape.
         """
-        _check(OBS_INSTANCES, self.input_features, lambda shape: shape[1:] == (COLUMNS,))
-        _check(ACTION, self.output_features, lambda shape: shape == (POSE_SIZE,))
+        check_sets_and_poses(self)
 
     @property
     def observation_delta_indices(self) -> list[int] | None:
@@ -182,15 +178,3 @@ class TTPConfig(PreTrainedConfig):
     def reward_delta_indices(self) -> None:
         """TTP sees no reward."""
         return None
-
-
-def _check(
-    name: str, features: dict[str, PolicyFeature] | None, fits: Callable[[tuple], bool]
-) -> None:
-    feature = (features or {}).get(name)
-    if feature is None or not fits(tuple(feature.shape)):
-        found = "is missing" if feature is None else f"has the shape {tuple(feature.shape)}"
-        raise ValueError(
-            f"TTP reads sets of rows of {COLUMNS} numbers and answers with a pose of {POSE_SIZE}, "
-            f"but {name!r} {found}; use a data set or an environment of kitchen_prefs."
-        )

@@ -16,7 +16,8 @@ from kitchen_prefs.instances import POSE, PROMPT_CAPACITY
 from ..instances.categories import Categories
 from ..instances.demonstrations import Demonstrations
 from ..instances.failures import Failures, invent_failures
-from ..instances.sets import choosable, chosen_rows, is_place_decision, of_like_length
+from ..instances.features import shown
+from ..instances.sets import accuracies, choosable, chosen_rows, is_place_decision, of_like_length
 from .attention import Tokens
 from .configuration_ttp import TTPConfig
 from .history import History, objects_of
@@ -93,12 +94,7 @@ class TTPPolicy(PreTrainedPolicy):
             scores = self._score(situations.select(part), preference, pairs.prompt_of[part])
             losses[part] = F.cross_entropy(scores, targets, reduction="none")
             correct[part] = scores.argmax(dim=1) == targets
-        kinds = {"pick": correct[~is_place], "place": correct[is_place]}
-        return losses.mean(), {
-            f"{name}_accuracy": hits.float().mean().item()
-            for name, hits in kinds.items()
-            if len(hits)
-        }
+        return losses.mean(), accuracies(correct, is_place)
 
     def pair(self, batch: dict[str, Tensor]) -> tuple[Pairs, Situations]:
         """Pair a batch with prompts; in training, augment the pairs.
@@ -160,10 +156,10 @@ class TTPPolicy(PreTrainedPolicy):
             ValueError: If the sets or, on the first call, the prompts are missing.
         """
         self.eval()
-        observed = _observed(batch, OBS_INSTANCES)  # (B, N, 13)
+        observed = shown(batch, OBS_INSTANCES)  # (B, N, 13)
         sets = self.recognition(observed) if self.recognition else observed
         if self._preference is None:
-            self._preference = self._encode(one_by_one(_observed(batch, OBS_PROMPT)))
+            self._preference = self._encode(one_by_one(shown(batch, OBS_PROMPT)))
         prompt_of = torch.arange(len(self._preference.features), device=sets.device)
         environments = torch.arange(len(sets), device=sets.device)
         asked = environments.repeat_interleave(len(prompt_of) // len(sets))  # (B V,)
@@ -214,12 +210,3 @@ def one_by_one(prompts: Tensor) -> Tensor:
             f"{prompts.shape[1]} rows are not a multiple of; take them from the environment."
         )
     return prompts.unflatten(1, (-1, capacity)).flatten(0, 1)
-
-
-def _observed(batch: dict[str, Tensor], key: str) -> Tensor:
-    if key not in batch:
-        raise ValueError(
-            f"TTP needs {key!r}, which the environment does not show; roll it out in an "
-            "environment of kitchen_prefs, which shows sets of instances and a prompt."
-        )
-    return batch[key]

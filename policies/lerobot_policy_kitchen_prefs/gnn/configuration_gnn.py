@@ -1,0 +1,113 @@
+"""What can be chosen about the graph network. The defaults are the paper's."""
+
+from dataclasses import dataclass, field
+
+from lerobot.configs import FeatureType, NormalizationMode, PolicyFeature, PreTrainedConfig
+from lerobot.optim import AdamConfig
+
+from kitchen_prefs.environment_config import OBS_PREFERENCE
+
+from ..instances.features import check_sets_and_poses
+
+
+@PreTrainedConfig.register_subclass("gnn")
+@dataclass
+class GNNConfig(PreTrainedConfig):
+    """Configuration of the graph network (paper, appendix "Baseline: GNN").
+
+    Attributes:
+        dim: Size of a node.
+        n_layers: Layers of attention. The paper does not say how many; its transformer has two.
+        n_heads: Attention heads of each layer, which share `dim`; the same holds for them.
+        attention: "gat" (Velickovic et al., 2018) or "gatv2", whose nodes each have a ranking of
+            their neighbours of their own (Brody et al., 2022).
+        encoding: "linear" takes extents and poses as numbers (the paper); "fourier" adds waves of
+            them, so that millimetres count.
+        time: Whether nodes tell the decision's index, as the paper's do. Longer sessions run past
+            the indices that training saw.
+        pre_norm: Whether a layer is added to its input and followed by a feed-forward network, with
+            layer normalisation before each, instead of being followed by an ELU.
+        readout: "linear" scores each node by itself; "pointer" compares it with what all nodes say
+            together.
+        clashes: Whether learned shapes alone say which places the objects of a set block.
+        failures: Whether the network sees which rows it has just chosen in vain.
+    """
+
+    normalization_mapping: dict[str, NormalizationMode] = field(
+        default_factory=lambda: dict.fromkeys(
+            ("STATE", "ENV", "ACTION"), NormalizationMode.IDENTITY
+        )
+    )
+
+    # Architecture (paper, appendix "Baseline: GNN").
+    dim: int = 128
+    n_layers: int = 2
+    n_heads: int = 2
+    attention: str = "gat"
+    encoding: str = "linear"
+    time: bool = True
+
+    # Departures from the paper, off by default.
+    pre_norm: bool = False
+    readout: str = "linear"
+    clashes: bool = False
+    failures: bool = False
+
+    # Training preset (paper, appendix "Baseline: GNN").
+    optimizer_lr: float = 0.01
+    optimizer_weight_decay: float = 1e-3
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        for name, choices in (
+            ("attention", ("gat", "gatv2")),
+            ("encoding", ("linear", "fourier")),
+            ("readout", ("linear", "pointer")),
+        ):
+            if getattr(self, name) not in choices:
+                raise ValueError(f"{name} is {getattr(self, name)!r}; it must be one of {choices}.")
+        if self.n_layers < 1:
+            raise ValueError("n_layers is at least 1; without attention no node knows of another.")
+        if self.dim % self.n_heads:
+            raise ValueError(f"{self.n_heads} heads cannot share {self.dim} dimensions equally.")
+
+    @property
+    def track(self) -> str:
+        """What the environment has to tell the policy; `kitchen-prefs evaluate` reads it."""
+        return "privileged"
+
+    def get_optimizer_preset(self) -> AdamConfig:
+        """The paper's optimiser."""
+        return AdamConfig(lr=self.optimizer_lr, weight_decay=self.optimizer_weight_decay)
+
+    def get_scheduler_preset(self) -> None:
+        """The paper names no schedule."""
+        return None
+
+    def validate_features(self) -> None:
+        """Check that there are sets of instances to look at and poses to return.
+
+        The preference's label becomes an input, too: environments of the privileged track show it,
+        data sets have it in a column that LeRobot does not take for an observation.
+
+        Raises:
+            ValueError: If a feature is missing or has another shape.
+        """
+        check_sets_and_poses(self)
+        assert self.input_features is not None
+        self.input_features[OBS_PREFERENCE] = PolicyFeature(FeatureType.STATE, (1,))
+
+    @property
+    def observation_delta_indices(self) -> None:
+        """One decision at a time."""
+        return None
+
+    @property
+    def action_delta_indices(self) -> None:
+        """One decision at a time."""
+        return None
+
+    @property
+    def reward_delta_indices(self) -> None:
+        """No rewards are read."""
+        return None

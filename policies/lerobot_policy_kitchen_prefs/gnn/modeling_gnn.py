@@ -1,0 +1,166 @@
+"""The graph network as a LeRobot policy: imitation in training, the highest row when acting.
+
+It is told the preference's true label: the privileged track.
+"""
+
+from typing import Any
+
+import numpy as np
+import torch
+import torch.nn.functional as F
+from lerobot.datasets import LeRobotDatasetMetadata
+from lerobot.policies import PreTrainedPolicy
+from lerobot.utils.constants import ACTION
+from torch import Tensor, nn
+
+from kitchen_prefs.environment_config import OBS_INSTANCES, OBS_PREFERENCE
+from kitchen_prefs.instances import POSE
+from kitchen_prefs.preferences import TWELVE
+
+from ..instances.categories import Categories
+from ..instances.demonstrations import Demonstrations
+from ..instances.failures import Failures, invent_failures
+from ..instances.features import shown
+from ..instances.sets import accuracies, choosable, chosen_rows, is_place_decision
+from .configuration_gnn import GNNConfig
+from .network import GNNetwork, Judgement
+
+
+class GNNPolicy(PreTrainedPolicy):
+    """Graph network with the preference as an input (paper, section 3.1, "Baselines")."""
+
+    config_class = GNNConfig
+    name = "gnn"
+
+    def __init__(
+        self, config: GNNConfig, dataset_meta: LeRobotDatasetMetadata | None = None, **_: Any
+    ) -> None:
+        """Make the network, and read the labels if there is a data set to train on.
+
+        Args:
+            config: The configuration.
+            dataset_meta: The metadata of the data set that is trained on. Without it the policy
+                acts but does not learn by imitation.
+            **_: What else LeRobot offers to policies.
+
+        Raises:
+            ValueError: If the features or the data set's columns are not those of kitchen_prefs, or
+                if the data set shows a preference that is none of the twelve.
+        """
+        super().__init__(config)
+        config.validate_features()
+        self.config: GNNConfig = config
+        self.network = GNNetwork(config)
+        self.labels: Tensor | None = None  # (E,), of each episode of the data set
+        if dataset_meta is not None:
+            demonstrations = Demonstrations.read(dataset_meta, chosen_only=True)
+            self.labels = _labels_of(demonstrations, dataset_meta.repo_id)
+            self.categories = Categories.of(demonstrations)
+        self.reset()
+
+    def get_optim_params(self) -> list[nn.Parameter]:
+        """All parameters, in one group."""
+        return list(self.parameters())
+
+    # Training --------------------------------------------------------------------------------
+
+    def forward(self, batch: dict[str, Tensor]) -> tuple[Tensor, dict[str, float]]:
+        """The cross-entropy between the scores of the rows and the expert's choices.
+
+        Args:
+            batch: LeRobot's batch of B frames: the sets, the actions and the episodes.
+
+        Returns:
+            The loss, and the shares of pick and of place decisions in which the highest score is
+            the expert's choice.
+
+        Raises:
+            ValueError: If the policy was made without a data set, or an action is no row's pose.
+        """
+        if self.labels is None:
+            raise ValueError(
+                "The graph network takes the preferences' labels from the data set that it trains "
+                "on; make it with dataset_meta=dataset.meta, as lerobot-train does."
+            )
+        sets = batch[OBS_INSTANCES]  # (B, N, 13)
+        targets = chosen_rows(sets, batch[ACTION])  # (B,)
+        labels = self.labels.to(sets.device)[batch["episode_index"]]  # (B,)
+        failed = torch.zeros(sets.shape[:2], dtype=torch.bool, device=sets.device)
+        if self.training and self.config.failures:
+            # The draws depend on the batch alone, so that a resumed run repeats an unbroken one.
+            generator = np.random.default_rng(batch["index"].cpu().numpy())
+            failed = invent_failures(sets, targets, self.categories, generator)
+        scores = _of_choosable(sets, self.network(sets, failed, labels))  # (B, N)
+        correct = scores.argmax(dim=1) == targets
+        return F.cross_entropy(scores, targets), accuracies(correct, is_place_decision(sets))
+
+    # Acting ----------------------------------------------------------------------------------
+
+    def reset(self) -> None:
+        """Forget the past: other episodes begin."""
+        self._failures = Failures()
+
+    @torch.no_grad()
+    def select_action(self, batch: dict[str, Tensor], **_: Any) -> Tensor:
+        """Choose a row of each set.
+
+        Args:
+            batch: The observations of B environments of the privileged track.
+            **_: What else LeRobot offers to policies.
+
+        Returns:
+            The poses of the chosen rows, (B, 7).
+
+        Raises:
+            ValueError: If the sets or the labels are missing.
+        """
+        self.eval()
+        sets = shown(batch, OBS_INSTANCES)  # (B, N, 13)
+        judgement = self.judge(batch, self._failures.find(sets))
+        choices = _of_choosable(sets, judgement).argmax(dim=1)  # (B,)
+        chosen = sets[torch.arange(len(sets), device=sets.device), choices]  # (B, 13)
+        self._failures.remember(chosen)
+        return chosen[:, POSE]
+
+    def predict_action_chunk(self, batch: dict[str, Tensor], **_: Any) -> Tensor:
+        """The action as a chunk of one, (B, 1, 7)."""
+        return self.select_action(batch)[:, None]
+
+    # Both, and learning from rewards ------------------------------------------------------------
+
+    @property
+    def summary_size(self) -> int:
+        """The size d of a set's summary."""
+        return self.config.dim
+
+    def judge(self, batch: dict[str, Tensor], failed: Tensor) -> Judgement:
+        """Judge the rows of what environments show.
+
+        Args:
+            batch: What `select_action` takes.
+            failed: Which rows were just chosen in vain, (B, N) bool.
+
+        Returns:
+            The rows' scores and the sets' summaries.
+
+        Raises:
+            ValueError: What `select_action` raises.
+        """
+        labels = shown(batch, OBS_PREFERENCE).flatten().round().long()  # (B,)
+        return self.network(shown(batch, OBS_INSTANCES), failed, labels)
+
+
+def _of_choosable(sets: Tensor, judgement: Judgement) -> Tensor:
+    """The scores, (B, N), of the rows that a decision may choose, -inf for the others."""
+    return judgement.scores.masked_fill(~choosable(sets), -torch.inf)
+
+
+def _labels_of(demonstrations: Demonstrations, name: str) -> Tensor:
+    """The preference's label of each episode, (E,) int64."""
+    labels = torch.from_numpy(demonstrations.preference)
+    if (labels >= len(TWELVE)).any():
+        raise ValueError(
+            f"The data set {name!r} shows preferences that are none of the {len(TWELVE)} which the "
+            "graph network has inputs for; train on dishwasher-train-v1 or dishwasher-train-all-v1."
+        )
+    return labels

@@ -1,0 +1,221 @@
+"""The graph network: instances that know the preference look at each other, then are scored."""
+
+from typing import NamedTuple
+
+import torch
+from torch import Tensor, nn
+from torch.nn import functional as F
+from torch_geometric.nn import GATConv, GATv2Conv
+from torch_geometric.nn.aggr import AttentionalAggregation, MeanAggregation
+
+from kitchen_prefs.instances import DECISION, EXTENTS, IS_OBJECT, POSE, POSITION, QUATERNION
+from kitchen_prefs.preferences import TWELVE
+
+from ..instances.clashes import Clashes, left_to_attention
+from ..instances.failures import FailedRows, lowered
+from ..instances.sets import is_real
+from ..instances.waves import (
+    EXTENTS_RANGE,
+    FREQUENCIES,
+    POSITION_RANGE,
+    QUATERNION_RANGE,
+    FourierFeatures,
+)
+from .configuration_gnn import GNNConfig
+from .graphs import Graphs
+
+NUMBERS = [DECISION, *range(EXTENTS.start, POSE.stop), IS_OBJECT]  # the paper's 12 attributes
+WAVES = (POSE.stop - EXTENTS.start) * 2 * FREQUENCIES  # of extents, position and quaternion
+NO_NODE = -1e8  # the score of a row that is no node: its probability is 0, its gradient finite
+
+
+class Judgement(NamedTuple):
+    """What the network makes of B sets.
+
+    Attributes:
+        scores: A score for every row, (B, N); NO_NODE for padding and for what is not looked at.
+        summary: All nodes of a set together, (B, d).
+    """
+
+    scores: Tensor
+    summary: Tensor
+
+
+class GNNetwork(nn.Module):
+    """Graph attention over the fully connected graph of the visible instances."""
+
+    def __init__(self, config: GNNConfig) -> None:
+        """Make the network of a configuration."""
+        super().__init__()
+        self.inputs = NodeInputs(config)
+        layer = ResidualLayer if config.pre_norm else PlainLayer
+        self.layers = nn.ModuleList(layer(config) for _ in range(config.n_layers))
+        self.norm = nn.LayerNorm(config.dim) if config.pre_norm else nn.Identity()
+        points = config.readout == "pointer"
+        self.summarise = (
+            AttentionalAggregation(nn.Linear(config.dim, 1)) if points else MeanAggregation()
+        )
+        self.readout = Pointer(config.dim) if points else LinearReadout(config.dim)
+        self.failures = FailedRows(config.dim) if config.failures else None
+        self.clashes = Clashes() if config.clashes else None
+
+    def forward(self, sets: Tensor, failed: Tensor, labels: Tensor) -> Judgement:
+        """Judge the rows of sets.
+
+        Args:
+            sets: Sets, zero-padded, (B, N, 13).
+            failed: Which rows were just chosen in vain, (B, N) bool.
+            labels: The preferences' labels, (B,) int64.
+
+        Returns:
+            The rows' scores and the sets' summaries.
+        """
+        graphs = Graphs.connect(left_to_attention(sets) if self.clashes else is_real(sets))
+        told = one_hot(labels)[graphs.graph_of]  # (V, 12)
+        nodes = self.inputs(graphs.pack(sets), told)  # (V, d)
+        if self.failures:
+            nodes = self.failures.mark(nodes, graphs.pack(failed))
+        for layer in self.layers:
+            nodes = layer(nodes, graphs.edges)
+        nodes = self.norm(nodes)
+        summary = self.summarise(nodes, graphs.graph_of, dim_size=len(sets))  # (B, d)
+        outputs = graphs.unpack(nodes)  # (B, N, d)
+        scores = self.readout(outputs, summary)  # (B, N)
+        if self.clashes:
+            free = self.clashes(sets)  # (B, N), log-probabilities
+            # Added, they teach shapes even where what is surely blocked lies at the bottom.
+            scores = free + lowered(scores, 1 - free.exp(), sets)
+        if self.failures:
+            scores = lowered(scores, self.failures.shares(outputs, failed), sets)
+        return Judgement(scores.masked_fill(~graphs.is_node, NO_NODE), summary)
+
+
+def one_hot(labels: Tensor) -> Tensor:
+    """The twelve-way one-hot of preferences (paper, appendix "Baseline: GNN").
+
+    Twelve inputs can name no other preference: whoever is none of the twelve has zeros, and the
+    network knows nothing of this person.
+
+    Args:
+        labels: The preferences' labels, (B,) int64.
+
+    Returns:
+        The one-hots, (B, 12) float32.
+    """
+    return (labels[:, None] == torch.arange(len(TWELVE), device=labels.device)).float()
+
+
+class NodeInputs(nn.Module):
+    """What a node begins as: its instance's attributes and the preference, projected."""
+
+    def __init__(self, config: GNNConfig) -> None:
+        """Make the projection of the paper's 24 inputs, or of waves beside them."""
+        super().__init__()
+        self.time = config.time
+        self.waves = Waves() if config.encoding == "fourier" else None
+        size = len(NUMBERS) + len(TWELVE) + (WAVES if self.waves else 0)
+        self.project = nn.Linear(size, config.dim)
+
+    def forward(self, rows: Tensor, told: Tensor) -> Tensor:
+        """Embed rows, (V, 13), and their preferences, (V, 12), as (V, d)."""
+        numbers = rows[:, NUMBERS]  # (V, 12)
+        if not self.time:
+            numbers = torch.cat([torch.zeros_like(numbers[:, :1]), numbers[:, 1:]], dim=1)
+        inputs = [numbers, told, *([self.waves(rows)] if self.waves else [])]
+        return self.project(torch.cat(inputs, dim=1))
+
+
+class Waves(nn.Module):
+    """Fourier features of extents, position and quaternion."""
+
+    def __init__(self) -> None:
+        """Make waves as long as the range of each."""
+        super().__init__()
+        self.extents = FourierFeatures(EXTENTS_RANGE)
+        self.position = FourierFeatures(POSITION_RANGE)
+        self.quaternion = FourierFeatures(QUATERNION_RANGE)
+
+    def forward(self, rows: Tensor) -> Tensor:
+        """Expand rows, (V, 13), to (V, 10 * 2 * FREQUENCIES)."""
+        extents = self.extents(rows[:, EXTENTS])
+        return torch.cat(
+            [extents, self.position(rows[:, POSITION]), self.quaternion(rows[:, QUATERNION])], dim=1
+        )
+
+
+class PlainLayer(nn.Module):
+    """Attention beside a skip connection, and an ELU (Velickovic et al., 2018).
+
+    In a fully connected graph all nodes have the same neighbours. Without the skip connection they
+    would be almost equal after one layer, and no score could tell them apart.
+    """
+
+    def __init__(self, config: GNNConfig) -> None:
+        """Make a layer of the configured size."""
+        super().__init__()
+        self.attention = attention(config, skip=True)
+
+    def forward(self, nodes: Tensor, edges: Tensor) -> Tensor:
+        """Transform nodes, (V, d), along edges, (2, E)."""
+        return F.elu(self.attention(nodes, edges))
+
+
+class ResidualLayer(nn.Module):
+    """Attention and a feed-forward network, each normalised before and added (as in TTP)."""
+
+    def __init__(self, config: GNNConfig) -> None:
+        """Make a layer of the configured size; the feed-forward network is twice as wide."""
+        super().__init__()
+        self.attention_norm, self.feedforward_norm = (nn.LayerNorm(config.dim) for _ in range(2))
+        self.attention = attention(config, skip=False)
+        self.feedforward = nn.Sequential(
+            nn.Linear(config.dim, 2 * config.dim), nn.GELU(), nn.Linear(2 * config.dim, config.dim)
+        )
+
+    def forward(self, nodes: Tensor, edges: Tensor) -> Tensor:
+        """Transform nodes, (V, d), along edges, (2, E)."""
+        nodes = nodes + self.attention(self.attention_norm(nodes), edges)
+        return nodes + self.feedforward(self.feedforward_norm(nodes))
+
+
+def attention(config: GNNConfig, skip: bool) -> nn.Module:
+    """Make the attention of a layer; the edges hold those of nodes to themselves already."""
+    kind = GATv2Conv if config.attention == "gatv2" else GATConv
+    size = config.dim // config.n_heads
+    return kind(config.dim, size, heads=config.n_heads, add_self_loops=False, residual=skip)
+
+
+class LinearReadout(nn.Module):
+    """The score of a node by itself."""
+
+    def __init__(self, dim: int) -> None:
+        """Make a readout of `dim` dimensions."""
+        super().__init__()
+        self.score = nn.Linear(dim, 1)
+
+    def forward(self, outputs: Tensor, summary: Tensor) -> Tensor:
+        """Score rows.
+
+        Args:
+            outputs: The nodes in their sets, (B, N, d).
+            summary: All nodes of a set together, (B, d); not used here.
+
+        Returns:
+            The scores, (B, N).
+        """
+        return self.score(outputs)[..., 0]
+
+
+class Pointer(nn.Module):
+    """The dot product of the nodes with what they say together, as TTP points."""
+
+    def __init__(self, dim: int) -> None:
+        """Make the projections of `dim` dimensions."""
+        super().__init__()
+        self.query = nn.Linear(dim, dim)
+        self.key = nn.Linear(dim, dim)
+
+    def forward(self, outputs: Tensor, summary: Tensor) -> Tensor:
+        """Score rows; arguments and result are those of `LinearReadout.forward`."""
+        scale = outputs.shape[-1] ** -0.5
+        return torch.einsum("bd,bnd->bn", self.query(summary), self.key(outputs)) * scale
