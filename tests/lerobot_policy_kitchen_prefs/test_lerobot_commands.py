@@ -174,7 +174,7 @@ def test_the_graph_network_resumes_and_plays_on_the_privileged_track(home):
 @pytest.mark.slow
 def test_the_recipes_train(home):
     # ttp_plus goes on from ttp_quick.
-    for recipe in ("ttp_quick", "ttp_plus", "ttp_paper", "gnn_paper", "gnn_tuned"):
+    for recipe in ("ttp_quick", "ttp_plus", "ttp_paper", "ttp_final", "gnn_paper", "gnn_tuned"):
         log = run(
             home,
             TRAIN,

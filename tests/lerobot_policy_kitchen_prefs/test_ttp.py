@@ -51,6 +51,7 @@ COMPACT = {
     "failures": True,
     "recognise": True,
 }
+FINAL = COMPACT | {"prompt_tokens": "final"}
 OTHER_ENCODINGS = {"pose_encoding": "linear", "extents_encoding": "label"}
 BOTH = pytest.mark.parametrize("settings", [PAPER, COMPACT], ids=["paper", "compact"])
 
@@ -119,7 +120,9 @@ def test_training_learns_the_expert_s_choices(dataset, settings):
 
 
 @pytest.mark.parametrize(
-    "settings", [PAPER, COMPACT, OTHER_ENCODINGS], ids=["paper", "compact", "other encodings"]
+    "settings",
+    [PAPER, COMPACT, FINAL, OTHER_ENCODINGS],
+    ids=["paper", "compact", "final", "other encodings"],
 )
 def test_every_parameter_is_trained(dataset, settings):
     policy = make_policy(dataset, **settings)

@@ -18,7 +18,9 @@ from kitchen_prefs.instances import (
     POSITION,
 )
 from kitchen_prefs.observations import EXTENT_NOISE, POSITION_NOISE
+from kitchen_prefs.observations import EXTENTS as DISH_EXTENTS
 from kitchen_prefs.scene.layout import COUNTER_HEIGHT
+from kitchen_prefs.sessions import expert_run
 from lerobot_policy_kitchen_prefs.instances.sets import chosen_rows, is_real
 from lerobot_policy_kitchen_prefs.ttp import recognition as recognising
 from lerobot_policy_kitchen_prefs.ttp.attention import Attention, GeometricScores, Tokens
@@ -46,6 +48,45 @@ def test_compact_prompts_are_the_chosen_rows_in_order(sessions):
     for prompt, rows, real in zip(prompts, tokens, mask, strict=True):
         assert torch.equal(rows[real], prompt[prompt[:, CHOSEN] > 0][:, :COLUMNS])
         assert (rows[real, DECISION] == torch.arange(int(real.sum()))).all()
+
+
+def final_tokens(prompts):
+    """The rows of each prompt's final tokens, as a set."""
+    tokens, mask = tokens_of_prompts(prompts, "final")
+    return [
+        {tuple(row) for row in rows[real].tolist()} for rows, real in zip(tokens, mask, strict=True)
+    ]
+
+
+def test_final_prompts_are_where_all_dishes_stand_in_the_end(sessions):
+    prompts = torch.from_numpy(np.stack([prompt_of(session) for session in sessions]))
+    for session, rows in zip(sessions, final_tokens(prompts), strict=True):
+        kitchen = expert_run(session).kitchen
+        racked = np.flatnonzero(kitchen.placement >= 0)
+        extents = DISH_EXTENTS[kitchen.dishes.category[racked]]
+        marks = np.tile(np.array([0, 1, 0]), (len(racked), 1))  # no time, an object, no place
+        expected = np.hstack([extents, kitchen.pose[racked], marks]).astype(np.float32)
+        assert rows == {tuple(row) for row in expected.tolist()}
+
+
+def test_final_prompts_tell_neither_order_nor_time(sessions):
+    prompts = torch.from_numpy(np.stack([prompt_of(session) for session in sessions]))
+    before = final_tokens(prompts)
+    shuffled = prompts[:, torch.randperm(prompts.shape[1])]
+    shuffled[..., DECISION] *= 3
+    shuffled[..., CHOSEN] = 0
+    assert final_tokens(shuffled) == before
+
+
+def test_relabelling_keeps_how_many_dishes_stand_in_each_rack(pairs, categories, stands):
+    relabelled = relabel(pairs, categories, stands, np.random.default_rng(0))
+    counts = []
+    for prompts in (pairs.prompts, relabelled.prompts):
+        tokens, mask = tokens_of_prompts(prompts, "final")
+        rack, in_rack = find_racks(tokens)
+        assert in_rack[mask].all()
+        counts.append((mask & (rack == 0)).sum(dim=1).tolist())
+    assert counts[0] == counts[1]
 
 
 def test_the_paper_s_prompts_have_an_act_token_after_each_decision(sessions):

@@ -12,13 +12,13 @@ import torch
 import torch.nn.functional as F
 from torch import Tensor, nn
 
-from kitchen_prefs.instances import EXTENTS, IS_OBJECT, IS_PLACE, POSITION, QUATERNION
+from kitchen_prefs.instances import EXTENTS, IS_PLACE, POSITION, QUATERNION
 
-from .sets import is_place_decision, is_real
+from .sets import LARGEST_DISH, is_dish, is_place_decision, is_real
 
-# m; the largest dishes are 36 cm from corner to corner and touch at that distance at most. The door
-# and the racks are larger; they are in nobody's way.
-REACH = 0.4
+# m; two of the largest dishes touch at that distance at most. The door and the racks are not in the
+# way.
+REACH = LARGEST_DISH
 SHARPNESS = 500.0  # 1 / m; shapes that share 2 mm clash with a probability of .73
 # A shape starts as the wall and the bottom of an elliptical cylinder: the radius and the height of
 # rings of six spheres, in halves of the extents.
@@ -52,7 +52,7 @@ class Clashes(nn.Module):
             The log-probability that nothing blocks a row, 0 for what is no place, (B, N).
         """
         places = sets[..., IS_PLACE] > 0  # (B, N)
-        dishes = (sets[..., IS_OBJECT] > 0) & (sets[..., EXTENTS].norm(dim=-1) < REACH)
+        dishes = is_dish(sets)  # (B, N)
         near = torch.cdist(sets[..., POSITION], sets[..., POSITION]) < REACH  # (B, N, N)
         b, i, j = (places[:, :, None] & dishes[:, None] & near).nonzero(as_tuple=True)  # (M,) each
         centres, radii = self._shapes(sets)

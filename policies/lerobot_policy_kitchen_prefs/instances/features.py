@@ -1,5 +1,7 @@
 """What LeRobot hands to a policy of instance sets: checked before it is used."""
 
+from collections.abc import Callable
+
 from lerobot.configs import PolicyFeature, PreTrainedConfig
 from lerobot.utils.constants import ACTION
 from torch import Tensor
@@ -16,14 +18,18 @@ def check_sets_and_poses(config: PreTrainedConfig) -> None:
     Raises:
         ValueError: If a feature is missing or has another shape.
     """
-    sets = (config.input_features or {}).get(OBS_INSTANCES)
-    pose = (config.output_features or {}).get(ACTION)
-    _check(config, OBS_INSTANCES, sets, fits=sets is not None and sets.shape[1:] == (COLUMNS,))
-    _check(config, ACTION, pose, fits=pose is not None and tuple(pose.shape) == (POSE_SIZE,))
+    _check(config, OBS_INSTANCES, config.input_features, lambda shape: shape[1:] == (COLUMNS,))
+    _check(config, ACTION, config.output_features, lambda shape: shape == (POSE_SIZE,))
 
 
-def _check(config: PreTrainedConfig, name: str, feature: PolicyFeature | None, fits: bool) -> None:
-    if not fits:
+def _check(
+    config: PreTrainedConfig,
+    name: str,
+    features: dict[str, PolicyFeature] | None,
+    fits: Callable[[tuple], bool],
+) -> None:
+    feature = (features or {}).get(name)
+    if feature is None or not fits(tuple(feature.shape)):
         found = "is missing" if feature is None else f"has the shape {tuple(feature.shape)}"
         raise ValueError(
             f"{config.type!r} reads sets of rows of {COLUMNS} numbers and answers with a pose of "

@@ -3,12 +3,20 @@
 import torch
 from torch import Tensor
 
-from kitchen_prefs.instances import IS_OBJECT, IS_PLACE, POSE
+from kitchen_prefs.instances import EXTENTS, IS_OBJECT, IS_PLACE, POSE
+
+# m, from corner to corner: the largest dishes have 36 cm, the door and the racks more than this.
+LARGEST_DISH = 0.4
 
 
 def is_real(rows: Tensor) -> Tensor:
     """Which rows, (..., D), are objects or places, not padding, (...) bool."""
     return (rows[..., IS_OBJECT] + rows[..., IS_PLACE]) > 0
+
+
+def is_dish(rows: Tensor) -> Tensor:
+    """Which rows, (..., D), are dishes, not places for them and not the door or a rack."""
+    return (rows[..., IS_OBJECT] > 0) & (rows[..., EXTENTS].norm(dim=-1) < LARGEST_DISH)
 
 
 def is_place_decision(sets: Tensor) -> Tensor:

@@ -22,7 +22,8 @@ class TTPConfig(PreTrainedConfig):
     Attributes:
         prompt_tokens: "states" makes the prompt's tokens from all rows of all decisions, with an
             ACT token after each (the paper); "chosen" from the chosen row of each decision alone,
-            some forty tokens instead of a thousand.
+            some forty tokens instead of a thousand; "final" from the dishes in the racks as they
+            stand in the end, without order and time.
         relabel: Whether training permutes the categories, in prompt and situation together, and
             lets dishes stand in the racks as their new category does.
         rounds: With how many prompts each pick decision of a batch is paired.
@@ -109,7 +110,7 @@ class TTPConfig(PreTrainedConfig):
     def __post_init__(self) -> None:
         super().__post_init__()
         for name, choices in (
-            ("prompt_tokens", ("states", "chosen")),
+            ("prompt_tokens", ("states", "chosen", "final")),
             ("pose_encoding", ("fourier", "linear")),
             ("extents_encoding", ("fourier", "linear", "label")),
             ("time_encoding", ("table", "fourier")),

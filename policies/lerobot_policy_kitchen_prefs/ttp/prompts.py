@@ -9,6 +9,11 @@ set:
 The compact tokens are the chosen rows alone, which the paper leaves out:
 
     [ chosen row 0 ] [ chosen row 1 ] ... [ chosen row T-1 ]
+
+The final tokens are the dishes in the racks as each rack was last seen, in no order and without
+time: what remains of a preference where only the final arrangement is looked at.
+
+    [ dish in the bottom rack ] ... [ dish in the top rack ] ...
 """
 
 import torch
@@ -17,7 +22,8 @@ from torch import Tensor
 
 from kitchen_prefs.instances import CHOSEN, COLUMNS, DECISION
 
-from ..instances.sets import is_real, keep
+from ..instances.sets import is_dish, is_real, keep
+from .stands import RACKS, find_racks
 
 
 def tokens_of_prompts(prompts: Tensor, kind: str) -> tuple[Tensor, Tensor]:
@@ -25,7 +31,7 @@ def tokens_of_prompts(prompts: Tensor, kind: str) -> tuple[Tensor, Tensor]:
 
     Args:
         prompts: Demonstrations, zero-padded, (G, P, 14).
-        kind: "states" or "chosen".
+        kind: "states", "chosen" or "final".
 
     Returns:
         The tokens' rows, (G, L, 13), and which of them are real, (G, L) bool.
@@ -33,7 +39,30 @@ def tokens_of_prompts(prompts: Tensor, kind: str) -> tuple[Tensor, Tensor]:
     if kind == "chosen":
         rows, mask = keep(prompts, is_real(prompts) & (prompts[..., CHOSEN] > 0))
         return rows[..., :COLUMNS], mask
+    if kind == "final":
+        rows, mask = keep(prompts[..., :COLUMNS], in_the_end(prompts))
+        return rows.index_fill(-1, torch.tensor([DECISION], device=rows.device), 0), mask
     return _with_act_tokens(*keep(prompts[..., :COLUMNS], is_real(prompts)))
+
+
+def in_the_end(prompts: Tensor) -> Tensor:
+    """Which rows are dishes in a rack at the last decision that saw that rack.
+
+    Args:
+        prompts: Demonstrations, zero-padded, (G, P, 14).
+
+    Returns:
+        A mask, (G, P) bool. A dish never leaves a rack, so the last decision that saw dishes in a
+        rack saw all of them.
+    """
+    rack, in_rack = find_racks(prompts)
+    stands = is_dish(prompts) & in_rack  # (G, P)
+    last_seen = torch.zeros_like(stands)
+    for one in range(RACKS):
+        in_this = stands & (rack == one)
+        decision = prompts[..., DECISION].where(in_this, -1)  # (G, P)
+        last_seen |= in_this & (decision == decision.amax(dim=1, keepdim=True))
+    return last_seen
 
 
 def _with_act_tokens(rows: Tensor, mask: Tensor) -> tuple[Tensor, Tensor]:
