@@ -181,6 +181,16 @@ class DishwasherLoading(gymnasium.Env):
         row = self._seen.row_of(choose(self._view, self._session.preference))
         return self._seen.rows[row, instances.POSE]
 
+    def feasible_rows(self) -> np.ndarray:
+        """The rows that the kitchen would carry out now, (N,) bool.
+
+        An oracle, which no track tells: it knows, for one, which placements a dish blocks.
+        """
+        feasible = np.zeros(instances.CAPACITY, dtype=bool)
+        for row in np.flatnonzero(instances.choosable(self._seen.rows)):
+            feasible[row] = not self._kitchen.refusal(int(self._seen.ids[row]))
+        return feasible
+
     def scene(self, opened: bool = False) -> SceneState:
         """What a renderer draws.
 

@@ -24,6 +24,7 @@ DOOR, BOTTOM_RACK, TOP_RACK, FIRST_DISH = 0, 1, 2, 3
 SINK = 999
 FIRST_PLACEMENT = {"bottom": 1000, "top": 2000}
 RACK_INSTANCE = {"bottom": BOTTOM_RACK, "top": TOP_RACK}
+RACK_OF_INSTANCE = {instance: rack for rack, instance in RACK_INSTANCE.items()}
 
 # Dishes still to come start to arrive at the latest after this many completed actions, so that a
 # policy which never clears the counter meets them too. The expert clears twenty dishes in 25
@@ -177,58 +178,67 @@ class Kitchen:
         Returns:
             An empty string, or why the decision could not be carried out.
         """
-        if self.held is not None:
-            return self._put(instance)
-        if instance == DOOR:
-            return self._toggle_door()
-        if instance in (BOTTOM_RACK, TOP_RACK):
-            return self._toggle_rack("bottom" if instance == BOTTOM_RACK else "top")
-        return self._pick(instance - FIRST_DISH)
+        refusal = self.refusal(instance)
+        if not refusal:
+            self._carry_out(instance)
+        return refusal
 
-    def _toggle_door(self) -> str:
-        if self.out is not None:
-            return "The door moves only with both racks in."
-        self.door_open = not self.door_open
-        self._complete_action()
+    def refusal(self, instance: int) -> str:
+        """Why a decision cannot be carried out now, or an empty string; nothing changes."""
+        if self.held is not None:
+            return self._refusal_of_place(instance)
+        if instance == DOOR:
+            return "" if self.out is None else "The door moves only with both racks in."
+        if instance in RACK_OF_INSTANCE:
+            return self._refusal_of_rack(RACK_OF_INSTANCE[instance])
+        dish = instance - FIRST_DISH
+        if not 0 <= dish < len(self.place) or self.place[dish] != Place.COUNTER:
+            return "Only a dish on the counter can be picked; one in a rack stays there."
         return ""
 
-    def _toggle_rack(self, rack: str) -> str:
+    def _refusal_of_rack(self, rack: str) -> str:
         if not self.door_open:
             return "A rack moves only with the door open."
         if self.out not in (None, rack):
             return "A rack moves only with the other rack in."
-        self.out = rack if self.out is None else None
+        return ""
+
+    def _refusal_of_place(self, instance: int) -> str:
+        if instance == SINK:
+            return ""
+        if self.out is None or instance - FIRST_PLACEMENT[self.out] not in self.placements():
+            return "A dish goes only into a placement of its category in the rack that is out."
+        if self._blocked[self.out][instance - FIRST_PLACEMENT[self.out]]:
+            return "The placement is blocked by a dish in the rack."
+        return ""
+
+    def _carry_out(self, instance: int) -> None:
+        if self.held is None and instance >= FIRST_DISH:
+            self.held = instance - FIRST_DISH
+            return
+        if self.held is not None:
+            self._put(instance)
+        elif instance == DOOR:
+            self.door_open = not self.door_open
+        else:
+            self.out = RACK_OF_INSTANCE[instance] if self.out is None else None
         self._complete_action()
-        return ""
 
-    def _pick(self, dish: int) -> str:
-        if not 0 <= dish < len(self.place) or self.place[dish] != Place.COUNTER:
-            return "Only a dish on the counter can be picked; one in a rack stays there."
-        self.held = dish
-        return ""
-
-    def _put(self, instance: int) -> str:
+    def _put(self, instance: int) -> None:
         if instance == SINK:
             self.place[self.held] = Place.SINK
             self.pose[self.held] = SINK_POSE
-        elif refusal := self._put_into_rack(instance):
-            return refusal
+        else:
+            self._put_into_rack(instance)
         self.held = None
-        self._complete_action()
-        return ""
 
-    def _put_into_rack(self, instance: int) -> str:
-        rack = self.out
-        if rack is None or instance - FIRST_PLACEMENT[rack] not in self.placements():
-            return "A dish goes only into a placement of its category in the rack that is out."
-        placement = instance - FIRST_PLACEMENT[rack]
-        if self._blocked[rack][placement]:
-            return "The placement is blocked by a dish in the rack."
+    def _put_into_rack(self, instance: int) -> None:
+        assert self.out is not None
+        rack, placement = self.out, instance - FIRST_PLACEMENT[self.out]
         self.place[self.held] = IN_RACK[rack]
         self.placement[self.held] = placement
         self.pose[self.held] = self._table.pose[rack][placement]
         self._blocked[rack] |= self._table.blocks[placement]
-        return ""
 
     def _complete_action(self) -> None:
         self.completed += 1

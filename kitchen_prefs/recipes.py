@@ -1,6 +1,8 @@
-"""Where the training recipes lie: YAML files that `lerobot-train --config_path` takes.
+"""Where the training recipes lie: YAML files.
 
-They belong to the policies: `policies/recipes/` in a checkout, inside their package in a wheel.
+`lerobot-train --config_path` takes them, `kitchen-prefs reinforce --recipe` those of reinforcement
+learning. They belong to the policies: `policies/recipes/` in a checkout, inside their package in a
+wheel.
 """
 
 from importlib.util import find_spec

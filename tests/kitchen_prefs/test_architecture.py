@@ -39,6 +39,7 @@ ORDER = (
     "evaluator",
     "selection",
     "evaluation",
+    "reinforcement",
     "quickstart",
     "reproduction",
     "commands",  # of the scene and of the data sets: they stand on top of everything but the CLI

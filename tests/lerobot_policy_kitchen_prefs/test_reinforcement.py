@@ -1,0 +1,208 @@
+"""Learning from rewards: rows as actions, masks, and the command from training to evaluation."""
+
+import json
+from copy import deepcopy
+
+import numpy as np
+import pytest
+import torch
+from safetensors.torch import load_file
+from stable_baselines3.common.env_checker import check_env
+from stable_baselines3.common.vec_env import DummyVecEnv
+from typer.testing import CliRunner
+
+from kitchen_prefs import instances
+from kitchen_prefs.cli import command_line
+from kitchen_prefs.demonstrations import demonstrate
+from kitchen_prefs.environment import LIMIT_FACTOR
+from kitchen_prefs.instances import CAPACITY, POSE
+from kitchen_prefs.records import read_episodes
+from kitchen_prefs.reinforcement.learner import make_learner
+from kitchen_prefs.reinforcement.rows import RowActions
+from kitchen_prefs.reinforcement.settings import read_settings
+from kitchen_prefs.reinforcement.training import make_policy
+from kitchen_prefs.sessions import make_session
+
+# A small network that plays 32 decisions between two updates.
+TINY = (
+    "--policy.dim=8",
+    "--environments=2",
+    "--steps=16",
+    "--batch_size=16",
+    "--epochs=2",
+    "--save_freq=32",
+)
+
+
+def run(*arguments):
+    result = CliRunner().invoke(command_line(), arguments)
+    if result.exception and not isinstance(result.exception, SystemExit):
+        raise result.exception
+    return result.output
+
+
+def reinforce(out, interactions, *more):
+    return run("reinforce", f"--out={out}", f"--interactions={interactions}", *TINY, *more)
+
+
+@pytest.fixture(scope="module")
+def trained(tmp_path_factory):
+    """A run of 64 interactions in two parts."""
+    out = tmp_path_factory.mktemp("runs") / "plain"
+    reinforce(out, 32)
+    output = reinforce(out, 64)
+    assert "32 decisions in" in output
+    assert "a second" in output
+    return out
+
+
+def weights(run, interactions):
+    folder = run / "checkpoints" / f"{interactions:06d}"
+    return load_file(folder / "pretrained_model" / "model.safetensors")
+
+
+# The environment ---------------------------------------------------------------------------------
+
+
+def row_of(environment, action):
+    """The row whose pose an action is."""
+    rows = environment._seen["instances"]
+    matches = (rows[:, POSE] == action).all(axis=1) & instances.choosable(rows)
+    return int(np.flatnonzero(matches)[0])
+
+
+def test_stable_baselines_finds_nothing_wrong():
+    check_env(RowActions(), warn=False)
+
+
+def test_the_expert_s_rows_earn_its_rewards_and_pack_everything():
+    environment, session = RowActions(), make_session("train", 3)
+    environment.reset(seed=3)
+    earned, done = [], False
+    while not done:
+        action = environment.env.expert_action()
+        _, reward, done, truncated, info = environment.step(row_of(environment, action))
+        earned.append(reward)
+        assert not truncated
+    assert earned == demonstrate(session).reward.tolist()
+    assert info["PE"] == 1
+    assert info["is_success"]
+
+
+def test_sessions_are_the_published_ones_of_train_and_change():
+    environment, seen = RowActions(), set()
+    environment.reset(seed=1000)
+    for _ in range(6):
+        environment.reset()
+        session = environment.env.session
+        assert (session.split, session.salt) == ("train", 0)
+        seen.add(session.index)
+    assert len(seen) > 3
+
+
+def test_what_cannot_be_chosen_is_forbidden_costs_and_counts():
+    environment = RowActions(penalty=0.5)
+    before = deepcopy(environment.reset(seed=0)[0])
+    limit = LIMIT_FACTOR * len(demonstrate(make_session("train", 0)).action)
+    for decision in range(1, limit + 1):
+        after, reward, terminated, truncated, info = environment.step(CAPACITY - 1)
+        assert reward == -0.5
+        assert info["refusal"]
+        assert not terminated
+        assert truncated == (decision == limit)
+        np.testing.assert_equal(after, before)
+    assert info["PE"] == 0
+
+
+@pytest.mark.parametrize("seed", [0, 100, 300])
+def test_the_mask_is_what_the_kitchen_would_carry_out(seed):
+    environment, refused = RowActions(), 0
+    environment.reset(seed=seed)
+    for _ in range(25):
+        mask = environment.action_masks()
+        may_choose = np.flatnonzero(instances.choosable(environment._seen["instances"]))
+        assert not np.delete(mask, may_choose).any()
+        for row in may_choose:
+            carried_out = not deepcopy(environment).step(row)[4]["refusal"]
+            assert mask[row] == carried_out
+            refused += not carried_out
+        environment.step(row_of(environment, environment.env.expert_action()))
+    assert refused > 25  # closed racks, the door, blocked placements
+
+
+# Learning ----------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("masked", [False, True])
+def test_masked_choices_are_never_refused_and_others_are(masked):
+    settings = read_settings("gnn_rl", TINY)
+    refusals = []
+
+    class Spied(RowActions):
+        def step(self, action):
+            result = super().step(action)
+            refusals.append(bool(result[4]["refusal"]))
+            return result
+
+    torch.manual_seed(0)
+    environments = DummyVecEnv([Spied] * settings.environments)
+    make_learner(settings, make_policy(settings), environments, seed=0, masked=masked).learn(64)
+    assert len(refusals) == 64
+    assert any(refusals) == (not masked)
+
+
+def test_padding_is_never_chosen():
+    settings = read_settings("gnn_rl", TINY)
+    environments = DummyVecEnv([RowActions] * settings.environments)
+    learner = make_learner(settings, make_policy(settings), environments, seed=0, masked=False)
+    shown = environments.reset()
+    observation, _ = learner.policy.obs_to_tensor(shown)
+    chances = learner.policy.get_distribution(observation).distribution.probs
+    real = torch.from_numpy(shown["instances"]).any(dim=-1)
+    assert (chances[real] > 0).all()
+    assert not chances[~real].any()
+
+
+def test_a_run_goes_on_and_learns(trained):
+    last = trained / "checkpoints" / "last"
+    assert last.resolve().name == "000064"
+    step = json.loads((last / "training_state" / "training_step.json").read_text())["step"]
+    assert step == 64
+    before, after = weights(trained, 32), weights(trained, 64)
+    assert all(not torch.equal(before[name], after[name]) for name in before)
+    assert list((trained / "tensorboard").glob("events.*"))
+
+
+def test_a_finished_run_is_left_alone(trained):
+    assert "a second" not in reinforce(trained, 64)
+
+
+def test_a_run_with_other_settings_is_refused(trained):
+    with pytest.raises(ValueError, match="other settings"):
+        reinforce(trained, 96, "--mask")
+    with pytest.raises(ValueError, match="other settings"):
+        reinforce(trained, 96, "--learning_rate=0.1")
+
+
+@pytest.mark.slow
+def test_evaluate_plays_the_export_on_the_privileged_track(trained, tmp_path):
+    checkpoint = trained / "checkpoints" / "last" / "pretrained_model"
+    given = (f"--policy.path={checkpoint}", f"--out={tmp_path}", "--batch-size=30")
+    run("evaluate", "--split=noisy", *given)
+    assert len(read_episodes(tmp_path / "noisy.jsonl")) == 60
+    conditions = json.loads((tmp_path / "noisy.json").read_text())["conditions"]
+    assert (conditions["policy"], conditions["track"]) == ("gnn", "privileged")
+
+
+def test_impossible_settings_are_refused(tmp_path):
+    with pytest.raises(ValueError, match="save_freq"):
+        reinforce(tmp_path, 32, "--steps=15")
+    with pytest.raises(ValueError, match=r"no setting 'epoch'.*'epochs'"):
+        reinforce(tmp_path, 32, "--epoch=3")
+    with pytest.raises(ValueError, match="failures"):
+        reinforce(tmp_path, 32, "--policy.failures=true")
+    with pytest.raises(ValueError, match="ttp_quick"):
+        reinforce(tmp_path, 32, "--recipe=ttp_quick")
+    with pytest.raises(ValueError, match="scores no rows"):
+        run("reinforce", f"--out={tmp_path}", "--policy.type=ttp")
+    assert not list(tmp_path.iterdir())
