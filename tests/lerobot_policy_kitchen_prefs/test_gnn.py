@@ -29,6 +29,7 @@ TUNED = {
     "readout": "pointer",
     "clashes": True,
     "failures": True,
+    "recognise": True,
 }
 BOTH = pytest.mark.parametrize("kind", [PAPER, TUNED], ids=["paper", "tuned"])
 

@@ -31,6 +31,8 @@ class GNNConfig(PreTrainedConfig):
             together.
         clashes: Whether learned shapes alone say which places the objects of a set block.
         failures: Whether the network sees which rows it has just chosen in vain.
+        recognise: Whether dishes that are seen noisily are taken for the known ones that they
+            resemble.
     """
 
     normalization_mapping: dict[str, NormalizationMode] = field(
@@ -52,6 +54,7 @@ class GNNConfig(PreTrainedConfig):
     readout: str = "linear"
     clashes: bool = False
     failures: bool = False
+    recognise: bool = False
 
     # Training preset (paper, appendix "Baseline: GNN").
     optimizer_lr: float = 0.01

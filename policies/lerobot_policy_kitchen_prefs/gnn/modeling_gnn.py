@@ -21,6 +21,7 @@ from ..instances.categories import Categories
 from ..instances.demonstrations import Demonstrations
 from ..instances.failures import Failures, invent_failures
 from ..instances.features import shown
+from ..instances.recognition import Recognition
 from ..instances.sets import accuracies, choosable, chosen_rows, is_place_decision
 from .configuration_gnn import GNNConfig
 from .network import GNNetwork, Judgement
@@ -51,11 +52,14 @@ class GNNPolicy(PreTrainedPolicy):
         config.validate_features()
         self.config: GNNConfig = config
         self.network = GNNetwork(config)
+        self.recognition = Recognition() if config.recognise else None
         self.labels: Tensor | None = None  # (E,), of each episode of the data set
         if dataset_meta is not None:
             demonstrations = Demonstrations.read(dataset_meta, chosen_only=True)
             self.labels = _labels_of(demonstrations, dataset_meta.repo_id)
             self.categories = Categories.of(demonstrations)
+            if self.recognition:
+                self.recognition.remember(demonstrations)
         self.reset()
 
     def get_optim_params(self) -> list[nn.Parameter]:
@@ -115,12 +119,12 @@ class GNNPolicy(PreTrainedPolicy):
             ValueError: If the sets or the labels are missing.
         """
         self.eval()
-        sets = shown(batch, OBS_INSTANCES)  # (B, N, 13)
+        observed, sets = shown(batch, OBS_INSTANCES), self._recognise(batch)  # (B, N, 13) each
         judgement = self.judge(batch, self._failures.find(sets))
         choices = _of_choosable(sets, judgement).argmax(dim=1)  # (B,)
-        chosen = sets[torch.arange(len(sets), device=sets.device), choices]  # (B, 13)
-        self._failures.remember(chosen)
-        return chosen[:, POSE]
+        environments = torch.arange(len(sets), device=sets.device)
+        self._failures.remember(sets[environments, choices])
+        return observed[environments, choices][:, POSE]
 
     def predict_action_chunk(self, batch: dict[str, Tensor], **_: Any) -> Tensor:
         """The action as a chunk of one, (B, 1, 7)."""
@@ -147,7 +151,12 @@ class GNNPolicy(PreTrainedPolicy):
             ValueError: What `select_action` raises.
         """
         labels = shown(batch, OBS_PREFERENCE).flatten().round().long()  # (B,)
-        return self.network(shown(batch, OBS_INSTANCES), failed, labels)
+        return self.network(self._recognise(batch), failed, labels)
+
+    def _recognise(self, batch: dict[str, Tensor]) -> Tensor:
+        """What is seen, taken for what is known, (B, N, 13)."""
+        observed = shown(batch, OBS_INSTANCES)
+        return self.recognition(observed) if self.recognition else observed
 
 
 def _of_choosable(sets: Tensor, judgement: Judgement) -> Tensor:

@@ -17,6 +17,7 @@ from ..instances.categories import Categories
 from ..instances.demonstrations import Demonstrations
 from ..instances.failures import Failures, invent_failures
 from ..instances.features import shown
+from ..instances.recognition import Recognition
 from ..instances.sets import accuracies, choosable, chosen_rows, is_place_decision, of_like_length
 from .attention import Tokens
 from .configuration_ttp import TTPConfig
@@ -24,7 +25,6 @@ from .history import History, objects_of
 from .network import TTPNetwork
 from .pairing import Pairs, make_pairs
 from .prompts import tokens_of_prompts
-from .recognition import Recognition
 from .relabelling import relabel
 from .situations import Situations
 from .stands import Stands
