@@ -13,7 +13,7 @@ from kitchen_prefs.splits import suggest
 
 @dataclass
 class Settings:
-    """Constants of PPO (Schulman et al., 2017), stable-baselines3's where the recipe has no other.
+    """What is trained, and the constants of PPO (Schulman et al., 2017).
 
     Attributes:
         policy: The policy that learns, such as `type: gnn`.
@@ -48,15 +48,28 @@ class Settings:
     seed: int = 1000
 
     def __post_init__(self) -> None:
-        if self.save_freq % (self.environments * self.steps):
+        for name in ("environments", "steps", "batch_size", "epochs", "save_freq"):
+            if getattr(self, name) < 1:
+                raise ValueError(f"{name} is {getattr(self, name)}; it must be at least 1.")
+        if self.rollout % self.batch_size:
             raise ValueError(
-                f"save_freq is a multiple of environments times steps, which is "
-                f"{self.environments * self.steps}; {self.save_freq} is not."
+                f"batch_size divides environments times steps, which is {self.rollout}; "
+                f"{self.batch_size} does not."
+            )
+        if self.save_freq % self.rollout:
+            raise ValueError(
+                f"save_freq is a multiple of environments times steps, which is {self.rollout}; "
+                f"{self.save_freq} is not."
             )
         if getattr(self.policy, "failures", False):
             raise ValueError(
                 "failures are invented where demonstrations are learned; leave policy.failures off."
             )
+
+    @property
+    def rollout(self) -> int:
+        """How many decisions are played between two updates."""
+        return self.environments * self.steps
 
 
 def read_settings(recipe: str, options: Sequence[str]) -> Settings:

@@ -34,6 +34,8 @@ from kitchen_prefs.reinforcement.learner import make_learner
 from kitchen_prefs.reinforcement.rows import RowActions
 from kitchen_prefs.reinforcement.settings import Settings
 
+SETTINGS = "settings.json"
+
 
 @dataclass(frozen=True)
 class Pace:
@@ -63,15 +65,23 @@ def reinforce(settings: Settings, interactions: int, masked: bool, run: Path) ->
         How fast it was; nothing was played if the run had as many interactions already.
 
     Raises:
-        ValueError: If the folder holds a run with other settings, or if the policy cannot learn
-            from rewards.
+        ValueError: If the folder holds a run with other settings, if the policy cannot learn from
+            rewards, or if as many interactions cannot be played.
     """
     told = json.loads(json.dumps({"masked": masked, **draccus.encode(settings)}))
     checkpoint = last_checkpoint(run)
-    if checkpoint and json.loads((run / "settings.json").read_text()) != told:
-        raise ValueError(f"{run} is a run with other settings; give another --out or delete it.")
+    if interactions % settings.rollout:
+        raise ValueError(
+            f"Between two updates {settings.rollout:,} decisions are played, of which "
+            f"{interactions:,} interactions are no multiple."
+        )
+    if checkpoint and _told_before(run) != told:
+        raise ValueError(
+            f"{run} is a run of another command or with other settings; give another --out or "
+            "delete it."
+        )
     learner, policy = _begin(settings, masked, checkpoint)
-    write_json(run / "settings.json", told)
+    write_json(run / SETTINGS, told)
     learner.set_logger(configure(str(run / "tensorboard"), ["tensorboard"]))
     begun, start = learner.num_timesteps, perf_counter()
     watch = Watch(interactions)
@@ -98,6 +108,12 @@ def make_policy(settings: Settings) -> Any:
     settings.policy.input_features = {OBS_INSTANCES: features["instances"]}
     settings.policy.output_features = {ACTION: PolicyFeature(FeatureType.ACTION, (7,))}
     return policy_class(settings.policy).to(settings.policy.device)
+
+
+def _told_before(run: Path) -> dict | None:
+    """What a run was begun with; None if it was not `reinforce` that began it."""
+    file = run / SETTINGS
+    return json.loads(file.read_text()) if file.exists() else None
 
 
 def _begin(

@@ -151,16 +151,19 @@ def test_masked_choices_are_never_refused_and_others_are(masked):
     assert any(refusals) == (not masked)
 
 
-def test_padding_is_never_chosen():
+def test_only_what_a_decision_may_choose_has_a_chance():
     settings = read_settings("gnn_rl", TINY)
     environments = DummyVecEnv([RowActions] * settings.environments)
     learner = make_learner(settings, make_policy(settings), environments, seed=0, masked=False)
-    shown = environments.reset()
-    observation, _ = learner.policy.obs_to_tensor(shown)
-    chances = learner.policy.get_distribution(observation).distribution.probs
-    real = torch.from_numpy(shown["instances"]).any(dim=-1)
-    assert (chances[real] > 0).all()
-    assert not chances[~real].any()
+    environments.reset()
+    for _ in range(8):
+        observation, _ = learner.policy.obs_to_tensor(environments.envs[0]._seen)
+        chances = (
+            learner.policy.get_distribution(observation).distribution.probs[0].detach().numpy()
+        )
+        sets = environments.envs[0]._seen["instances"]
+        np.testing.assert_equal(chances > 0, instances.choosable(sets))
+        environments.step([int(np.flatnonzero(chances)[-1])] * settings.environments)
 
 
 def test_a_run_goes_on_and_learns(trained):

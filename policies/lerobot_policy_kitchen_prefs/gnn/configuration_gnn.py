@@ -17,7 +17,8 @@ class GNNConfig(PreTrainedConfig):
 
     Attributes:
         dim: Size of a node.
-        n_layers: Layers of attention. The paper does not say how many; its transformer has two.
+        n_layers: Layers of attention, each with a skip connection. The paper does not say how many;
+            its transformer has two.
         n_heads: Attention heads of each layer, which share `dim`; the same holds for them.
         attention: "gat" (Velickovic et al., 2018) or "gatv2", whose nodes each have a ranking of
             their neighbours of their own (Brody et al., 2022).
@@ -69,8 +70,9 @@ class GNNConfig(PreTrainedConfig):
         ):
             if getattr(self, name) not in choices:
                 raise ValueError(f"{name} is {getattr(self, name)!r}; it must be one of {choices}.")
-        if self.n_layers < 1:
-            raise ValueError("n_layers is at least 1; without attention no node knows of another.")
+        for name in ("dim", "n_layers", "n_heads"):
+            if getattr(self, name) < 1:
+                raise ValueError(f"{name} is {getattr(self, name)}; it must be at least 1.")
         if self.dim % self.n_heads:
             raise ValueError(f"{self.n_heads} heads cannot share {self.dim} dimensions equally.")
 

@@ -22,7 +22,7 @@ from ..instances.demonstrations import Demonstrations
 from ..instances.failures import Failures, invent_failures
 from ..instances.features import shown
 from ..instances.recognition import Recognition
-from ..instances.sets import accuracies, choosable, chosen_rows, is_place_decision
+from ..instances.sets import accuracies, chosen_rows, is_place_decision
 from .configuration_gnn import GNNConfig
 from .network import GNNetwork, Judgement
 
@@ -94,7 +94,7 @@ class GNNPolicy(PreTrainedPolicy):
             # The draws depend on the batch alone, so that a resumed run repeats an unbroken one.
             generator = np.random.default_rng(batch["index"].cpu().numpy())
             failed = invent_failures(sets, targets, self.categories, generator)
-        scores = _of_choosable(sets, self.network(sets, failed, labels))  # (B, N)
+        scores = self.network(sets, failed, labels).scores  # (B, N)
         correct = scores.argmax(dim=1) == targets
         return F.cross_entropy(scores, targets), accuracies(correct, is_place_decision(sets))
 
@@ -120,8 +120,7 @@ class GNNPolicy(PreTrainedPolicy):
         """
         self.eval()
         observed, sets = shown(batch, OBS_INSTANCES), self._recognise(batch)  # (B, N, 13) each
-        judgement = self.judge(batch, self._failures.find(sets))
-        choices = _of_choosable(sets, judgement).argmax(dim=1)  # (B,)
+        choices = self.judge(batch, self._failures.find(sets)).scores.argmax(dim=1)  # (B,)
         environments = torch.arange(len(sets), device=sets.device)
         self._failures.remember(sets[environments, choices])
         return observed[environments, choices][:, POSE]
@@ -157,11 +156,6 @@ class GNNPolicy(PreTrainedPolicy):
         """What is seen, taken for what is known, (B, N, 13)."""
         observed = shown(batch, OBS_INSTANCES)
         return self.recognition(observed) if self.recognition else observed
-
-
-def _of_choosable(sets: Tensor, judgement: Judgement) -> Tensor:
-    """The scores, (B, N), of the rows that a decision may choose, -inf for the others."""
-    return judgement.scores.masked_fill(~choosable(sets), -torch.inf)
 
 
 def _labels_of(demonstrations: Demonstrations, name: str) -> Tensor:

@@ -8,12 +8,13 @@ from torch.nn import functional as F
 from torch_geometric.nn import GATConv, GATv2Conv
 from torch_geometric.nn.aggr import AttentionalAggregation, MeanAggregation
 
+from kitchen_prefs.environment import MAX_EPISODE_STEPS
 from kitchen_prefs.instances import DECISION, EXTENTS, IS_OBJECT, POSE, POSITION, QUATERNION
 from kitchen_prefs.preferences import TWELVE
 
 from ..instances.clashes import Clashes, left_to_attention
 from ..instances.failures import FailedRows, lowered
-from ..instances.sets import is_real
+from ..instances.sets import choosable, is_real
 from ..instances.waves import (
     EXTENTS_RANGE,
     FREQUENCIES,
@@ -24,16 +25,16 @@ from ..instances.waves import (
 from .configuration_gnn import GNNConfig
 from .graphs import Graphs
 
-NUMBERS = [DECISION, *range(EXTENTS.start, POSE.stop), IS_OBJECT]  # the paper's 12 attributes
+NUMBERS = [*range(EXTENTS.start, POSE.stop), IS_OBJECT]  # with the time the paper's 12 attributes
 WAVES = (POSE.stop - EXTENTS.start) * 2 * FREQUENCIES  # of extents, position and quaternion
-NO_NODE = -1e8  # the score of a row that is no node: its probability is 0, its gradient finite
+NEVER = -1e8  # the score of a row that may not be chosen: its probability is 0, its gradient finite
 
 
 class Judgement(NamedTuple):
     """What the network makes of B sets.
 
     Attributes:
-        scores: A score for every row, (B, N); NO_NODE for padding and for what is not looked at.
+        scores: A score for every row, (B, N); NEVER for what the decision may not choose.
         summary: All nodes of a set together, (B, d).
     """
 
@@ -87,7 +88,7 @@ class GNNetwork(nn.Module):
             scores = free + lowered(scores, 1 - free.exp(), sets)
         if self.failures:
             scores = lowered(scores, self.failures.shares(outputs, failed), sets)
-        return Judgement(scores.masked_fill(~graphs.is_node, NO_NODE), summary)
+        return Judgement(scores.masked_fill(~choosable(sets), NEVER), summary)
 
 
 def one_hot(labels: Tensor) -> Tensor:
@@ -113,15 +114,14 @@ class NodeInputs(nn.Module):
         super().__init__()
         self.time = config.time
         self.waves = Waves() if config.encoding == "fourier" else None
-        size = len(NUMBERS) + len(TWELVE) + (WAVES if self.waves else 0)
+        size = 1 + len(NUMBERS) + len(TWELVE) + (WAVES if self.waves else 0)
         self.project = nn.Linear(size, config.dim)
 
     def forward(self, rows: Tensor, told: Tensor) -> Tensor:
         """Embed rows, (V, 13), and their preferences, (V, 12), as (V, d)."""
-        numbers = rows[:, NUMBERS]  # (V, 12)
-        if not self.time:
-            numbers = torch.cat([torch.zeros_like(numbers[:, :1]), numbers[:, 1:]], dim=1)
-        inputs = [numbers, told, *([self.waves(rows)] if self.waves else [])]
+        # The paper names no unit of time; whole decisions would outweigh everything beside them.
+        time = rows[:, DECISION, None] / MAX_EPISODE_STEPS * self.time  # (V, 1)
+        inputs = [time, rows[:, NUMBERS], told, *([self.waves(rows)] if self.waves else [])]
         return self.project(torch.cat(inputs, dim=1))
 
 

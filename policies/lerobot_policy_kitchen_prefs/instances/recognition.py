@@ -12,7 +12,7 @@ from torch import Tensor, nn
 from kitchen_prefs.instances import EXTENTS, POSE
 from kitchen_prefs.observations import EXTENT_NOISE, POSITION_NOISE
 
-from ..instances.demonstrations import PLACE, Demonstrations
+from .demonstrations import PLACE, Demonstrations
 
 CAPACITY = 1024  # places; a constant shape is what LeRobot can load. Demonstrations show 673
 # What is further off than five standard deviations of perception's errors is something unknown.
