@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import torch
+import torch.nn.functional as F
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from lerobot.configs import FeatureType, PolicyFeature
@@ -16,7 +17,7 @@ from kitchen_prefs.sessions import make_session
 from lerobot_policy_kitchen_prefs.gnn import GNNConfig, GNNPolicy
 from lerobot_policy_kitchen_prefs.gnn.graphs import Graphs
 from lerobot_policy_kitchen_prefs.gnn.network import NEVER, one_hot
-from lerobot_policy_kitchen_prefs.instances.sets import choosable, is_real
+from lerobot_policy_kitchen_prefs.instances.sets import choosable, chosen_rows, is_real
 
 NAME = "dishwasher-train-p2-d3-v1"  # two preferences, three demonstrations each
 PAPER: dict = {}
@@ -126,8 +127,35 @@ def test_the_labels_of_training_are_those_of_the_episodes(dataset):
         assert policy.labels[item["episode_index"]] == item["preference"]
 
 
+@BOTH
+def test_training_tells_each_episode_s_label(dataset, kind):
+    policy = perturbed(make_policy(dataset, **kind)).eval()
+    batch = frames(dataset, range(0, len(dataset), 11))
+    told = torch.stack([dataset[i]["preference"] for i in range(0, len(dataset), 11)])
+    assert len(told.unique()) == 2
+    sets = batch["observation.instances"]
+    scores = policy.network(sets, torch.zeros(sets.shape[:2], dtype=torch.bool), told).scores
+    loss, _ = policy(batch)
+    torch.testing.assert_close(loss, F.cross_entropy(scores, chosen_rows(sets, batch["action"])))
+    policy.labels = policy.labels.flip(0)
+    assert not torch.isclose(loss, policy(batch)[0])
+
+
 def test_the_paper_s_network_sees_24_numbers():
-    assert make_policy().network.inputs.project.in_features == 24
+    policy = perturbed(make_policy())
+    assert policy.network.inputs.project.in_features == 24
+    batch = observations(range(2))
+    nothing = torch.zeros(2, CAPACITY, dtype=torch.bool)
+    before = policy.judge(batch, nothing).scores
+    for column in range(COLUMNS):
+        changed = batch["observation.instances"].clone()
+        changed[:, 3, column] += 0.5
+        if column == IS_PLACE:  # other rows may be chosen, but the row itself looks the same
+            both = batch["observation.instances"][:, 3], changed[:, 3]
+            assert torch.equal(*(policy.network.inputs(rows, torch.zeros(2, 12)) for rows in both))
+            continue
+        after = policy.judge(batch | {"observation.instances": changed}, nothing).scores
+        assert not torch.equal(before, after)
 
 
 def test_a_label_is_a_one_hot_and_a_stranger_s_is_none():

@@ -2,21 +2,30 @@
 
 import json
 from copy import deepcopy
+from shutil import copytree
 
 import numpy as np
 import pytest
 import torch
 from safetensors.torch import load_file
 from stable_baselines3.common.env_checker import check_env
+from stable_baselines3.common.monitor import Monitor
 from stable_baselines3.common.vec_env import DummyVecEnv
 from typer.testing import CliRunner
 
 from kitchen_prefs import instances
+from kitchen_prefs.checkpoints import read_config, read_policy
 from kitchen_prefs.cli import command_line
 from kitchen_prefs.demonstrations import demonstrate
 from kitchen_prefs.environment import LIMIT_FACTOR
 from kitchen_prefs.instances import CAPACITY, POSE
 from kitchen_prefs.records import read_episodes
+from kitchen_prefs.reinforcement.checkpoints import (
+    last_checkpoint,
+    pretrained_model,
+    restore,
+    save_checkpoint,
+)
 from kitchen_prefs.reinforcement.learner import make_learner
 from kitchen_prefs.reinforcement.rows import RowActions
 from kitchen_prefs.reinforcement.settings import read_settings
@@ -176,6 +185,29 @@ def test_a_run_goes_on_and_learns(trained):
     assert list((trained / "tensorboard").glob("events.*"))
 
 
+def test_what_goes_on_is_what_was_saved(tmp_path):
+    settings = read_settings("gnn_rl", TINY)
+
+    def learner_of(policy):
+        environments = DummyVecEnv([lambda: Monitor(RowActions())] * settings.environments)
+        return make_learner(settings, policy, environments, seed=0, masked=False)
+
+    policy = make_policy(settings)
+    learner = learner_of(policy).learn(32)
+    save_checkpoint(tmp_path, learner, policy)
+    drawn = torch.rand(3)
+    checkpoint = last_checkpoint(tmp_path)
+    folder = pretrained_model(checkpoint)
+    again = learner_of(read_policy(folder, read_config(folder, [])))
+    restore(checkpoint, again)
+    assert again.num_timesteps == 32
+    assert torch.equal(torch.rand(3), drawn)
+    torch.testing.assert_close(again.policy.state_dict(), learner.policy.state_dict())
+    moments = again.policy.optimizer.state_dict()["state"]
+    assert moments
+    torch.testing.assert_close(moments, learner.policy.optimizer.state_dict()["state"])
+
+
 def test_a_finished_run_is_left_alone(trained):
     assert "a second" not in reinforce(trained, 64)
 
@@ -197,15 +229,33 @@ def test_evaluate_plays_the_export_on_the_privileged_track(trained, tmp_path):
     assert (conditions["policy"], conditions["track"]) == ("gnn", "privileged")
 
 
-def test_impossible_settings_are_refused(tmp_path):
-    with pytest.raises(ValueError, match="save_freq"):
-        reinforce(tmp_path, 32, "--steps=15")
-    with pytest.raises(ValueError, match=r"no setting 'epoch'.*'epochs'"):
-        reinforce(tmp_path, 32, "--epoch=3")
-    with pytest.raises(ValueError, match="failures"):
-        reinforce(tmp_path, 32, "--policy.failures=true")
-    with pytest.raises(ValueError, match="ttp_quick"):
-        reinforce(tmp_path, 32, "--recipe=ttp_quick")
+@pytest.mark.parametrize(
+    ("option", "message"),
+    [
+        ("--steps=20", "save_freq is a multiple .* 40; 32 is not"),
+        ("--batch_size=12", "batch_size divides .* 32; 12 does not"),
+        ("--environments=0", "environments is 0; it must be at least 1"),
+        ("--policy.n_heads=0", "n_heads is 0; it must be at least 1"),
+        ("--interactions=33", "32 decisions are played, of which 33 interactions are no multiple"),
+        ("--epoch=3", "no setting 'epoch'.*'epochs'"),
+        ("--policy.failures=true", "failures"),
+        ("--recipe=ttp_quick", "ttp_quick"),
+    ],
+)
+def test_what_cannot_be_done_is_refused(tmp_path, option, message):
+    settings = ("--batch_size=8",) if option == "--steps=20" else ()
+    with pytest.raises(ValueError, match=message):
+        reinforce(tmp_path, 32, *settings, option)
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_policy_that_scores_no_rows_is_named(tmp_path):
     with pytest.raises(ValueError, match="scores no rows"):
         run("reinforce", f"--out={tmp_path}", "--policy.type=ttp")
-    assert not list(tmp_path.iterdir())
+
+
+def test_somebody_else_s_run_is_left_alone(trained, tmp_path):
+    copytree(trained, tmp_path / "run", symlinks=True)
+    (tmp_path / "run" / "settings.json").unlink()  # lerobot-train writes none
+    with pytest.raises(ValueError, match="another command"):
+        reinforce(tmp_path / "run", 96)
