@@ -93,7 +93,7 @@ def evaluate(
 
 @app.command()
 def select(
-    run: Annotated[Path, typer.Argument(help="The output folder of lerobot-train.")],
+    run: Annotated[Path, typer.Argument(help="The output folder of lerobot-train or `reinforce`.")],
     track: Track = None,
     batch_size: BatchSize = 16,
 ) -> None:

@@ -31,7 +31,7 @@ def select_checkpoint(
     The episodes are kept in RUN/selection, so that a selection that was killed goes on.
 
     Args:
-        run: The output folder of `lerobot-train`.
+        run: The output folder of `lerobot-train` or `kitchen-prefs reinforce`.
         track: What the environment tells the policy; if not given, what its settings ask for.
         batch_size: How many sessions are played at once.
 
@@ -44,9 +44,7 @@ def select_checkpoint(
         if folder.parent.name.isdigit()  # the link "last" names one of them again
     }
     if not folders:
-        raise ValueError(
-            f"{run} holds no checkpoints; give the output folder of a lerobot-train run."
-        )
+        raise ValueError(f"{run} holds no checkpoints; give the output folder of a training.")
     metrics = {}
     for step, folder in folders.items():
         actor = load_actor(str(folder), track=track)

@@ -29,7 +29,7 @@ def reinforce(
         bool, typer.Option("--mask", help="Mask what the kitchen would refuse: an oracle.")
     ] = False,
 ) -> None:
-    """Train a policy by PPO from the paper's rewards, on the sessions of train (privileged track).
+    """Train a policy by PPO from the paper's rewards, on the sessions of train (open track).
 
     A command that was stopped goes on; so does a finished one that is given more --interactions.
     The checkpoints are LeRobot's: evaluate and select take them, tensorboard reads OUT/tensorboard.

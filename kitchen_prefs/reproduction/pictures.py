@@ -19,7 +19,7 @@ AXES = {
     "Pick accuracy": "category accuracy (share of pick decisions)",
 }
 # Okabe and Ito's colours, which the colour-blind tell apart; the paper's are black and grey.
-COLOURS = ("#0072B2", "#D55E00", "#009E73", "#E69F00", "#56B4E9", "#CC79A7", "#8A7A2E")
+COLOURS = ("#0072B2", "#D55E00", "#009E73", "#E69F00", "#56B4E9", "#CC79A7", "#8A7A2E", "#882255")
 PAPER_COLOURS = ("#000000", "#888888")
 STEP = 14  # pixels between marks that stand side by side
 LEAST_WIDTH = 560  # pixels, so that names of rows fit

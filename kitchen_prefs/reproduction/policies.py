@@ -38,8 +38,8 @@ class Committed:
         folder = recipe_file(RECIPE).parents[1] / "checkpoints" / self.name
         if not folder.is_dir():
             raise ValueError(
-                f"There is no checkpoint {self.name!r} yet; train the recipe {self.name!r} and put "
-                f"the best checkpoint's pretrained_model at {folder}."
+                f"There is no checkpoint {self.name!r} yet; train its recipe and put the best "
+                f"checkpoint's pretrained_model at {folder}."
             )
         return folder
 

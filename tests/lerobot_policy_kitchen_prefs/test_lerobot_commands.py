@@ -9,6 +9,7 @@ import sys
 import numpy as np
 import pytest
 import torch
+import yaml
 from safetensors.torch import load_file
 
 from kitchen_prefs.datasets import make_dataset
@@ -132,22 +133,22 @@ def test_lerobot_eval_gives_the_expert_full_success(home):
 
 
 @pytest.mark.slow
-def test_lerobots_act_trains_on_the_same_data(home):
-    log = run(
-        home,
-        TRAIN,
-        "--policy.type=act",
-        "--policy.chunk_size=1",
-        "--policy.n_action_steps=1",
-        "--policy.dim_model=32",
-        "--policy.dim_feedforward=32",
-        f"--dataset.repo_id=kitchen_prefs/{DATASET}",
-        f"--output_dir={home / 'act'}",
-        "--batch_size=4",
-        "--steps=2",
-        *COMMON,
-    )
+@pytest.mark.parametrize(
+    ("recipe", "small"),
+    [
+        ("act", ("--policy.dim_model=32", "--policy.dim_feedforward=32")),
+        ("diffusion", ("--policy.down_dims=[16]", "--policy.num_inference_steps=2")),
+    ],
+)
+def test_lerobots_policies_train_and_play_unchanged(home, recipe, small):
+    config = f"--config_path={recipe_file(recipe)}"
+    data, output = f"--dataset.repo_id=kitchen_prefs/{DATASET}", f"--output_dir={home / recipe}"
+    log = run(home, TRAIN, config, data, output, *small, "--batch_size=4", "--steps=2", *COMMON)
     assert "step:2" in log
+    played = f"--policy.path={home / recipe / 'checkpoints' / 'last' / 'pretrained_model'}"
+    out = f"--out={home / recipe / 'evaluation'}"
+    run(home, "kitchen_prefs.cli", "evaluate", played, "--split=noisy", out, "--batch-size=30")
+    assert len(read_episodes(home / recipe / "evaluation" / "noisy.jsonl")) == 60
 
 
 @pytest.mark.slow
@@ -208,3 +209,11 @@ def test_mixed_precision_trains_weights_of_float32(home):
     assert np.isfinite(losses).all()
     weights = load_file(home / "mixed/checkpoints/000002/pretrained_model/model.safetensors")
     assert {weight.dtype for weight in weights.values()} == {torch.float32}
+
+
+def test_ttp_final_is_ttp_quick_with_another_prompt():
+    names = ("ttp_quick", "ttp_final")
+    quick, final = (yaml.safe_load(recipe_file(name).read_text()) for name in names)
+    assert quick["policy"].pop("prompt_tokens") == "chosen"
+    assert final["policy"].pop("prompt_tokens") == "final"
+    assert quick == final
