@@ -20,8 +20,6 @@ class GNNConfig(PreTrainedConfig):
         n_layers: Layers of attention, each with a skip connection. The paper does not say how many;
             its transformer has two.
         n_heads: Attention heads of each layer, which share `dim`; the same holds for them.
-        attention: "gat" (Velickovic et al., 2018) or "gatv2", whose nodes each have a ranking of
-            their neighbours of their own (Brody et al., 2022).
         encoding: "linear" takes extents and poses as numbers (the paper); "fourier" adds waves of
             them, so that millimetres count.
         time: Whether nodes tell the decision's index, as the paper's do. Longer sessions run past
@@ -46,7 +44,6 @@ class GNNConfig(PreTrainedConfig):
     dim: int = 128
     n_layers: int = 2
     n_heads: int = 2
-    attention: str = "gat"
     encoding: str = "linear"
     time: bool = True
 
@@ -64,7 +61,6 @@ class GNNConfig(PreTrainedConfig):
     def __post_init__(self) -> None:
         super().__post_init__()
         for name, choices in (
-            ("attention", ("gat", "gatv2")),
             ("encoding", ("linear", "fourier")),
             ("readout", ("linear", "pointer")),
         ):

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import torch
 from torch import Tensor, nn
 from torch.nn import functional as F
-from torch_geometric.nn import GATConv, GATv2Conv
+from torch_geometric.nn import DenseGATConv
 from torch_geometric.nn.aggr import AttentionalAggregation, MeanAggregation
 
 from kitchen_prefs.environment import MAX_EPISODE_STEPS
@@ -14,7 +14,7 @@ from kitchen_prefs.preferences import TWELVE
 
 from ..instances.clashes import Clashes, left_to_attention
 from ..instances.failures import FailedRows, lowered
-from ..instances.sets import choosable, is_real
+from ..instances.sets import choosable, is_real, of_like_length
 from ..instances.waves import (
     EXTENTS_RANGE,
     FREQUENCIES,
@@ -23,7 +23,6 @@ from ..instances.waves import (
     FourierFeatures,
 )
 from .configuration_gnn import GNNConfig
-from .graphs import Graphs
 
 NUMBERS = [*range(EXTENTS.start, POSE.stop), IS_OBJECT]  # with the time the paper's 12 attributes
 WAVES = (POSE.stop - EXTENTS.start) * 2 * FREQUENCIES  # of extents, position and quaternion
@@ -48,6 +47,7 @@ class GNNetwork(nn.Module):
     def __init__(self, config: GNNConfig) -> None:
         """Make the network of a configuration."""
         super().__init__()
+        self.dim = config.dim
         self.inputs = NodeInputs(config)
         layer = ResidualLayer if config.pre_norm else PlainLayer
         self.layers = nn.ModuleList(layer(config) for _ in range(config.n_layers))
@@ -71,23 +71,31 @@ class GNNetwork(nn.Module):
         Returns:
             The rows' scores and the sets' summaries.
         """
-        graphs = Graphs.connect(left_to_attention(sets) if self.clashes else is_real(sets))
-        told = one_hot(labels)[graphs.graph_of]  # (V, 12)
-        nodes = self.inputs(graphs.pack(sets), told)  # (V, d)
+        scores = sets.new_full(sets.shape[:2], NEVER)
+        summary = sets.new_zeros(len(sets), self.dim)
+        for part in of_like_length(sets):
+            n = int(is_real(sets[part]).any(dim=0).nonzero().max()) + 1  # the rest is padding
+            judgement = self._judge(sets[part, :n], failed[part, :n], labels[part])
+            scores[part, :n], summary[part] = judgement
+        return Judgement(scores, summary)
+
+    def _judge(self, sets: Tensor, failed: Tensor, labels: Tensor) -> Judgement:
+        is_node = left_to_attention(sets) if self.clashes else is_real(sets)  # (B, N)
+        nodes = self.inputs(sets, one_hot(labels))  # (B, N, d)
         if self.failures:
-            nodes = self.failures.mark(nodes, graphs.pack(failed))
+            nodes = self.failures.mark(nodes, failed)
         for layer in self.layers:
-            nodes = layer(nodes, graphs.edges)
+            nodes = layer(nodes, is_node)
         nodes = self.norm(nodes)
-        summary = self.summarise(nodes, graphs.graph_of, dim_size=len(sets))  # (B, d)
-        outputs = graphs.unpack(nodes)  # (B, N, d)
-        scores = self.readout(outputs, summary)  # (B, N)
+        of_set = is_node.nonzero()[:, 0]  # (V,)
+        summary = self.summarise(nodes[is_node], of_set, dim_size=len(sets))  # (B, d)
+        scores = self.readout(nodes, summary)  # (B, N)
         if self.clashes:
             free = self.clashes(sets)  # (B, N), log-probabilities
             # Added, they teach shapes even where what is surely blocked lies at the bottom.
             scores = free + lowered(scores, 1 - free.exp(), sets)
         if self.failures:
-            scores = lowered(scores, self.failures.shares(outputs, failed), sets)
+            scores = lowered(scores, self.failures.shares(nodes, failed), sets)
         return Judgement(scores.masked_fill(~choosable(sets), NEVER), summary)
 
 
@@ -117,12 +125,13 @@ class NodeInputs(nn.Module):
         size = 1 + len(NUMBERS) + len(TWELVE) + (WAVES if self.waves else 0)
         self.project = nn.Linear(size, config.dim)
 
-    def forward(self, rows: Tensor, told: Tensor) -> Tensor:
-        """Embed rows, (V, 13), and their preferences, (V, 12), as (V, d)."""
+    def forward(self, sets: Tensor, told: Tensor) -> Tensor:
+        """Embed the rows of sets, (B, N, 13), and their preferences, (B, 12), as (B, N, d)."""
         # The paper names no unit of time; whole decisions would outweigh everything beside them.
-        time = rows[:, DECISION, None] / MAX_EPISODE_STEPS * self.time  # (V, 1)
-        inputs = [time, rows[:, NUMBERS], told, *([self.waves(rows)] if self.waves else [])]
-        return self.project(torch.cat(inputs, dim=1))
+        time = sets[..., DECISION, None] / MAX_EPISODE_STEPS * self.time  # (B, N, 1)
+        told = told[:, None].expand(-1, sets.shape[1], -1)  # (B, N, 12)
+        inputs = [time, sets[..., NUMBERS], told, *([self.waves(sets)] if self.waves else [])]
+        return self.project(torch.cat(inputs, dim=-1))
 
 
 class Waves(nn.Module):
@@ -136,11 +145,36 @@ class Waves(nn.Module):
         self.quaternion = FourierFeatures(QUATERNION_RANGE)
 
     def forward(self, rows: Tensor) -> Tensor:
-        """Expand rows, (V, 13), to (V, 10 * 2 * FREQUENCIES)."""
-        extents = self.extents(rows[:, EXTENTS])
-        return torch.cat(
-            [extents, self.position(rows[:, POSITION]), self.quaternion(rows[:, QUATERNION])], dim=1
+        """Expand rows, (..., 13), to (..., 10 * 2 * FREQUENCIES)."""
+        waves = (
+            self.extents(rows[..., EXTENTS]),
+            self.position(rows[..., POSITION]),
+            self.quaternion(rows[..., QUATERNION]),
         )
+        return torch.cat(waves, dim=-1)
+
+
+class GraphAttention(nn.Module):
+    """Attention over the fully connected graph of each set (Velickovic et al., 2018)."""
+
+    def __init__(self, config: GNNConfig) -> None:
+        """Make the layer; its heads share the size of a node."""
+        super().__init__()
+        size = config.dim // config.n_heads
+        self.layer = DenseGATConv(config.dim, size, heads=config.n_heads)
+
+    def forward(self, nodes: Tensor, is_node: Tensor) -> Tensor:
+        """Let all rows of sets look at the nodes, themselves among them.
+
+        Args:
+            nodes: The rows, (B, N, d).
+            is_node: Which of them are nodes, (B, N) bool, at least one of each set.
+
+        Returns:
+            What they see, (B, N, d).
+        """
+        everyone = is_node[:, None].expand(-1, nodes.shape[1], -1)  # (B, N, N)
+        return self.layer(nodes, everyone, add_loop=False)
 
 
 class PlainLayer(nn.Module):
@@ -153,11 +187,12 @@ class PlainLayer(nn.Module):
     def __init__(self, config: GNNConfig) -> None:
         """Make a layer of the configured size."""
         super().__init__()
-        self.attention = attention(config, skip=True)
+        self.attention = GraphAttention(config)
+        self.skip = nn.Linear(config.dim, config.dim, bias=False)
 
-    def forward(self, nodes: Tensor, edges: Tensor) -> Tensor:
-        """Transform nodes, (V, d), along edges, (2, E)."""
-        return F.elu(self.attention(nodes, edges))
+    def forward(self, nodes: Tensor, is_node: Tensor) -> Tensor:
+        """Transform rows; arguments and result are those of `GraphAttention.forward`."""
+        return F.elu(self.attention(nodes, is_node) + self.skip(nodes))
 
 
 class ResidualLayer(nn.Module):
@@ -167,22 +202,15 @@ class ResidualLayer(nn.Module):
         """Make a layer of the configured size; the feed-forward network is twice as wide."""
         super().__init__()
         self.attention_norm, self.feedforward_norm = (nn.LayerNorm(config.dim) for _ in range(2))
-        self.attention = attention(config, skip=False)
+        self.attention = GraphAttention(config)
         self.feedforward = nn.Sequential(
             nn.Linear(config.dim, 2 * config.dim), nn.GELU(), nn.Linear(2 * config.dim, config.dim)
         )
 
-    def forward(self, nodes: Tensor, edges: Tensor) -> Tensor:
-        """Transform nodes, (V, d), along edges, (2, E)."""
-        nodes = nodes + self.attention(self.attention_norm(nodes), edges)
+    def forward(self, nodes: Tensor, is_node: Tensor) -> Tensor:
+        """Transform rows; arguments and result are those of `GraphAttention.forward`."""
+        nodes = nodes + self.attention(self.attention_norm(nodes), is_node)
         return nodes + self.feedforward(self.feedforward_norm(nodes))
-
-
-def attention(config: GNNConfig, skip: bool) -> nn.Module:
-    """Make the attention of a layer; the edges hold those of nodes to themselves already."""
-    kind = GATv2Conv if config.attention == "gatv2" else GATConv
-    size = config.dim // config.n_heads
-    return kind(config.dim, size, heads=config.n_heads, add_self_loops=False, residual=skip)
 
 
 class LinearReadout(nn.Module):
