@@ -78,8 +78,8 @@ TABLES: dict[str, Table | Curves] = {  # by worth
             "The GNN rows are of the open track, because they learn in the kitchen, and they are "
             "told the label. An interaction is one decision here, a pick or a place; the paper "
             "does not say which split its figure is of. Masked, PPO chose among what the kitchen "
-            "would carry out while it learned. Evaluated, no policy has a mask, and the most "
-            "probable row is taken, so one that is never carried out is chosen again and again."
+            "would carry out while it learned. Evaluated, no policy has a mask, and rows are drawn "
+            "by their probabilities, as they are in training."
         ),
     ),
     "unprompted": Table(

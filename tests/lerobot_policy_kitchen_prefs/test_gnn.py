@@ -173,6 +173,19 @@ def test_an_action_is_the_pose_of_a_row_that_can_be_chosen(kind, decision):
         assert (poses == action).all(dim=1).any()
 
 
+def test_rows_are_drawn_by_their_probabilities():
+    policy = make_policy(sample=True)
+    batch = observations([0] * 400)
+    nothing = torch.zeros(400, CAPACITY, dtype=torch.bool)
+    chances = policy.judge(batch, nothing).scores[0].softmax(dim=0)
+    torch.manual_seed(0)
+    actions = policy.select_action(batch)
+    matches = (batch["observation.instances"][..., POSE] == actions[:, None]).all(dim=-1)
+    assert torch.allclose(matches.float().mean(dim=0), chances, atol=0.1)
+    torch.manual_seed(0)
+    assert torch.equal(policy.select_action(batch), actions)
+
+
 @BOTH
 def test_scores_depend_neither_on_row_order_nor_on_padding_nor_on_the_batch(kind):
     policy = perturbed(make_policy(**kind))

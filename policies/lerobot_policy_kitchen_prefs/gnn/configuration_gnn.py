@@ -32,6 +32,8 @@ class GNNConfig(PreTrainedConfig):
         failures: Whether the network sees which rows it has just chosen in vain.
         recognise: Whether dishes that are seen noisily are taken for the known ones that they
             resemble.
+        sample: Whether acting draws a row by its probability, as PPO does when it learns, instead
+            of taking the most probable one.
     """
 
     normalization_mapping: dict[str, NormalizationMode] = field(
@@ -53,6 +55,7 @@ class GNNConfig(PreTrainedConfig):
     clashes: bool = False
     failures: bool = False
     recognise: bool = False
+    sample: bool = False
 
     # Training preset (paper, appendix "Baseline: GNN").
     optimizer_lr: float = 0.01

@@ -1,4 +1,4 @@
-"""The graph network as a LeRobot policy: imitation in training, the highest row when acting.
+"""The graph network as a LeRobot policy: imitation in training, one row of each set when acting.
 
 It is told the preference's true label: the privileged track.
 """
@@ -120,7 +120,8 @@ class GNNPolicy(PreTrainedPolicy):
         """
         self.eval()
         observed, sets = shown(batch, OBS_INSTANCES), self._recognise(batch)  # (B, N, 13) each
-        choices = self.judge(batch, self._failures.find(sets)).scores.argmax(dim=1)  # (B,)
+        scores = self.judge(batch, self._failures.find(sets)).scores  # (B, N)
+        choices = draw(scores) if self.config.sample else scores.argmax(dim=1)  # (B,)
         environments = torch.arange(len(sets), device=sets.device)
         self._failures.remember(sets[environments, choices])
         return observed[environments, choices][:, POSE]
@@ -156,6 +157,11 @@ class GNNPolicy(PreTrainedPolicy):
         """What is seen, taken for what is known, (B, N, 13)."""
         observed = shown(batch, OBS_INSTANCES)
         return self.recognition(observed) if self.recognition else observed
+
+
+def draw(scores: Tensor) -> Tensor:
+    """Draw a row of each set by its probability, (B, N) -> (B,) int64."""
+    return scores.softmax(dim=1).multinomial(1)[:, 0]
 
 
 def _labels_of(demonstrations: Demonstrations, name: str) -> Tensor:
