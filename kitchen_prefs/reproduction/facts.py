@@ -1,7 +1,7 @@
 """The facts of a table, results/TABLE.json: what was run, and what came of it.
 
 table, data_version, package_version   what the facts are of
-recipe, budget                         where something was trained: its recipe, and how many
+recipes, budget                        where something was trained: its recipes, and how many
                                        decisions each training from nothing saw
 rows                                   by what they are called:
     checkpoint | rule | options        which policy: a committed checkpoint, a rule, or what

@@ -6,10 +6,8 @@ from pathlib import Path
 import altair as alt
 
 from kitchen_prefs.files import whole_file
-from kitchen_prefs.reproduction.policies import RECIPE
 from kitchen_prefs.reproduction.table import Curves, Table
 
-OURS = f"{RECIPE}, our kitchen"
 PACKING_EFFICIENCY = "packing efficiency PE (share of the expert's)"
 AXES = {
     "PE": PACKING_EFFICIENCY,
@@ -44,7 +42,7 @@ def _table(table: Table, facts: dict) -> alt.LayerChart:
     Along the axis stand the groups, with a mark for each row; or the rows, of a single group.
     """
     several = len(table.groups) > 1
-    ours = list(facts["rows"] if several else _drawn(table))
+    ours = list(facts["rows"] if several else _drawn(table, facts))
     places = list(table.groups if several else facts["rows"])
     series = [*ours, *table.paper_values]
     width = max(LEAST_WIDTH, STEP * len(places) * (len(series) + 1))
@@ -78,11 +76,13 @@ def _marks(points: list[dict], table: Table, places: list[str], ours: list[str])
     return intervals + means
 
 
-def _drawn(table: Table) -> dict[str, str]:
+def _drawn(table: Table, facts: dict) -> dict[str, str]:
     """The metrics of a single group that share the first one's axis, by what they are called."""
     first = table.metrics[0]
     metrics = [metric for metric in table.metrics if AXES.get(metric) == AXES[first]]
-    return {metric: metric for metric in metrics} if len(metrics) > 1 else {OURS: first}
+    if len(metrics) > 1:
+        return {metric: metric for metric in metrics}
+    return {", ".join([*facts["recipes"], "our kitchen"]): first}
 
 
 def _ours(table: Table, facts: dict) -> Iterator[dict]:
@@ -93,7 +93,7 @@ def _ours(table: Table, facts: dict) -> Iterator[dict]:
                 first = of_group["metrics"][table.metrics[0]]
                 yield {"place": group, "series": row, **first}
             else:
-                for series, metric in _drawn(table).items():
+                for series, metric in _drawn(table, facts).items():
                     yield {"place": row, "series": series, **of_group["metrics"][metric]}
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 from kitchen_prefs.recipes import recipe_file
 from kitchen_prefs.splits import DATA_VERSION, HELD_OUT_PEOPLE
 
-RECIPE = "ttp_quick"  # what every training starts from: it learns from nothing in minutes
+RECIPE = "ttp_quick"  # what most trainings start from: it learns from nothing in minutes
 
 # A network that has learned already needs small steps and no warm-up, and one preference as it is.
 FINE_TUNING = (
@@ -59,7 +59,7 @@ class Rule:
 
 @dataclass(frozen=True)
 class Training:
-    """A training of the recipe `RECIPE` with some settings overridden.
+    """A training of a recipe with some settings overridden.
 
     Attributes:
         name: Names the run's folder, so trainings with one name are one training.
@@ -68,6 +68,7 @@ class Training:
         overrides: Further options of lerobot-train.
         preference: The label of the preference whose sessions alone it is measured on; None for
             all.
+        recipe: The recipe.
     """
 
     name: str
@@ -75,6 +76,7 @@ class Training:
     batch_size: int = 32  # the recipe's
     overrides: tuple[str, ...] = ()
     preference: int | None = None
+    recipe: str = RECIPE
 
     def steps(self, budget: int) -> int:
         """How many steps see `budget` decisions.

@@ -119,10 +119,11 @@ def _how_made(name: str, facts: dict) -> str:
     if "budget" not in facts:
         return f"Made by `kitchen-prefs reproduce {name}`; {versions}."
     seconds = list(_seconds(facts["rows"]))
+    recipes = " and ".join(f"`{recipe}`" for recipe in facts["recipes"])
     return (
         f"Made by `kitchen-prefs reproduce {name} --budget={facts['budget']}`; {versions}. Each "
-        f"training from nothing saw {facts['budget']:,} decisions with the recipe "
-        f"`{facts['recipe']}`; the trainings took {min(seconds):,} to {max(seconds):,} s each."
+        f"training from nothing saw {facts['budget']:,} decisions with the recipe {recipes}; the "
+        f"trainings took {min(seconds):,} to {max(seconds):,} s each."
     )
 
 

@@ -9,7 +9,7 @@ from tqdm import tqdm
 from kitchen_prefs.reproduction.facts import make_facts
 from kitchen_prefs.reproduction.groups import measure_groups
 from kitchen_prefs.reproduction.players import Player, players_of, prepare
-from kitchen_prefs.reproduction.policies import RECIPE, Policy
+from kitchen_prefs.reproduction.policies import Policy
 from kitchen_prefs.reproduction.processes import run_module
 from kitchen_prefs.reproduction.table import Table
 
@@ -40,7 +40,7 @@ def run_table(name: str, table: Table, budget: int, jobs: int, out: Path) -> dic
             zip(policies, tqdm(facts, name, len(policies), unit="policy"), strict=True)
         )
     rows = {label: of_policy[policy] for label, policy in table.rows.items()}
-    conditions = {"recipe": RECIPE, "budget": budget} if table.trains else {}
+    conditions = {"recipes": table.recipes, "budget": budget} if table.trains else {}
     return make_facts(name, rows, conditions)
 
 

@@ -62,7 +62,13 @@ class Table:
     @property
     def trains(self) -> bool:
         """Whether something has to be trained for it."""
-        return any(isinstance(policy, Training | FineTuning) for policy in self.policies)
+        return bool(self.recipes)
+
+    @property
+    def recipes(self) -> list[str]:
+        """The recipes of what has to be trained for it, each once."""
+        started = [of.start if isinstance(of, FineTuning) else of for of in self.policies]
+        return list(dict.fromkeys(of.recipe for of in started if isinstance(of, Training)))
 
     @property
     def asks_for_accuracy(self) -> bool:

@@ -14,7 +14,9 @@ from kitchen_prefs.reproduction.rows import (
     RULES,
     TTP,
     UNPROMPTED,
+    act,
     demonstrations,
+    diffusion,
     encoding,
     hidden,
     history,
@@ -99,6 +101,16 @@ TABLES: dict[str, Table | Curves] = {  # by worth
             "the nearest instance. The yardstick is `majority`, the rule that does what most of "
             "the training preferences do."
         ),
+    ),
+    "horizons": Table(
+        title="Decisions at a time",
+        paper="LeRobot's policies are not in the paper.",
+        axis="policy, and how many decisions it chooses from what it has seen once",
+        rows={f"ACT: {number}": act(number) for number in (1, 4, 16)}
+        | {f"diffusion: {number}": diffusion(number) for number in (1, 4)},
+        splits=("val",),
+        metrics=("PE", "Score"),
+        note="The recipes `act` and `diffusion` choose as many as do best here, on `val`.",
     ),
     "final_state": Table(
         title="A prompt of the final arrangement alone",

@@ -9,7 +9,7 @@ from filelock import FileLock
 
 from kitchen_prefs.files import write_json
 from kitchen_prefs.recipes import recipe_file
-from kitchen_prefs.reproduction.policies import RECIPE, Training
+from kitchen_prefs.reproduction.policies import Training
 from kitchen_prefs.reproduction.processes import run_module
 from kitchen_prefs.reproduction.runs import Run
 
@@ -32,7 +32,7 @@ def train(training: Training, budget: int, folder: Path, start: Path | None = No
     """
     run = _run_in(folder)
     options = [*training.options(budget), *([f"--policy.path={start}"] if start else [])]
-    run_training(training.name, run, RECIPE, options)
+    run_training(training.name, run, training.recipe, options)
     return run.checkpoint
 
 

@@ -73,7 +73,7 @@ def made_up_facts(name, mean=0.4):
             for group in table.groups
         }
         rows[label] = {"groups": groups, **seconds_of_row(policy)}
-    conditions = {"recipe": RECIPE, "budget": 32_000} if table.trains else {}
+    conditions = {"recipes": table.recipes, "budget": 32_000} if table.trains else {}
     return {
         "table": name,
         "data_version": 1,

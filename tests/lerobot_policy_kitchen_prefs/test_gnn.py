@@ -14,7 +14,8 @@ from kitchen_prefs.demonstrations import demonstrate
 from kitchen_prefs.instances import CAPACITY, COLUMNS, DECISION, IS_OBJECT, IS_PLACE, POSE
 from kitchen_prefs.preferences import TWELVE
 from kitchen_prefs.sessions import make_session
-from lerobot_policy_kitchen_prefs.gnn import GNNConfig, GNNPolicy
+from lerobot_policy_kitchen_prefs.gnn import GNNConfig
+from lerobot_policy_kitchen_prefs.gnn.modeling_gnn import GNNPolicy
 from lerobot_policy_kitchen_prefs.gnn.network import NEVER, GraphAttention, one_hot
 from lerobot_policy_kitchen_prefs.instances.sets import choosable, chosen_rows, is_real
 
