@@ -28,9 +28,10 @@ from kitchen_prefs.reinforcement.checkpoints import (
 )
 from kitchen_prefs.reinforcement.learner import make_learner
 from kitchen_prefs.reinforcement.rows import RowActions
-from kitchen_prefs.reinforcement.settings import read_settings
+from kitchen_prefs.reinforcement.settings import Settings, read_settings
 from kitchen_prefs.reinforcement.training import make_policy
 from kitchen_prefs.sessions import make_session
+from lerobot_policy_kitchen_prefs.ttp import TTPConfig
 
 # A small network that plays 32 decisions between two updates.
 TINY = (
@@ -249,9 +250,9 @@ def test_what_cannot_be_done_is_refused(tmp_path, option, message):
     assert not list(tmp_path.iterdir())
 
 
-def test_a_policy_that_scores_no_rows_is_named(tmp_path):
-    with pytest.raises(ValueError, match="scores no rows"):
-        run("reinforce", f"--out={tmp_path}", "--policy.type=ttp")
+def test_a_policy_that_scores_no_rows_is_named():
+    with pytest.raises(ValueError, match="'ttp' scores no rows"):
+        make_policy(Settings(policy=TTPConfig(device="cpu")))
 
 
 def test_somebody_else_s_run_is_left_alone(trained, tmp_path):
