@@ -35,7 +35,7 @@ class Settings:
     policy: PreTrainedConfig
     environments: int = 8
     steps: int = 250
-    batch_size: int = 64
+    batch_size: int = 100
     epochs: int = 10
     learning_rate: float = 3e-4
     weight_decay: float = 0.0
