@@ -3,11 +3,14 @@
 import json
 import shutil
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import fields
 from pathlib import Path
 
 import numpy as np
 import pytest
 import yaml
+from lerobot.configs import PreTrainedConfig
+from lerobot.utils.import_utils import register_third_party_plugins
 from PIL import Image
 from typer.testing import CliRunner
 
@@ -242,13 +245,15 @@ def test_a_training_that_two_ask_for_at_once_is_run_once(tmp_path, lerobot_train
 
 
 def test_every_training_has_its_data_set_and_its_settings():
-    from lerobot_policy_kitchen_prefs.ttp.configuration_ttp import TTPConfig
-
+    register_third_party_plugins()
     for policy in (*trainings(), *FineTuning(BASE, 1).trainings):
         content_of(policy.dataset)
-        settings = [one for one in policy.overrides if one.startswith("--policy.")]
-        for override in settings:
-            assert hasattr(TTPConfig(), override.removeprefix("--policy.").partition("=")[0])
+        recipe = yaml.safe_load(recipe_file(policy.recipe).read_text())
+        config = PreTrainedConfig.get_choice_class(recipe["policy"]["type"])
+        for override in policy.overrides:
+            if override.startswith("--policy."):
+                setting = override.removeprefix("--policy.").partition("=")[0]
+                assert setting in {field.name for field in fields(config)}
 
 
 def test_trainings_of_one_name_are_one_training():
