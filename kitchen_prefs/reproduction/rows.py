@@ -8,8 +8,6 @@ from kitchen_prefs.splits import DATA_VERSION
 BASE = Training("base")  # all of the training data, everything as in the recipe
 TTP: dict[str, Policy] = {f"TTP, {name}": Committed(name) for name in ("ttp_paper", "ttp_plus")}
 QUICK = Committed("ttp_quick")
-PLAIN = Training("plain", overrides=("--policy.relabel=false",))
-PLAIN_FINAL = Training("plain-final", overrides=(*PLAIN.overrides, "--policy.prompt_tokens=final"))
 GNN_IL: dict[str, Policy] = {
     f"GNN-IL, {name}": Committed(name)
     for name in ("gnn_paper", "gnn_paper_all", "gnn_tuned", "gnn_tuned_all")
