@@ -143,6 +143,11 @@ def test_lerobots_diffusion_trains_and_plays_unchanged(home):
     train_and_play(home, "diffusion", "--policy.down_dims=[16]", "--policy.num_inference_steps=2")
 
 
+@pytest.mark.slow
+def test_ttp_trains_and_plays_on_the_final_state_alone(home):
+    train_and_play(home, "ttp_final", *SMALL_TTP, "--policy.dim_feedforward=32")
+
+
 def train_and_play(home, recipe, *small):
     config = f"--config_path={recipe_file(recipe)}"
     data, output = f"--dataset.repo_id=kitchen_prefs/{DATASET}", f"--output_dir={home / recipe}"
@@ -173,7 +178,7 @@ def test_the_graph_network_resumes_and_plays_on_the_privileged_track(home):
 @pytest.mark.slow
 def test_the_recipes_train(home):
     # ttp_plus goes on from ttp_quick.
-    for recipe in ("ttp_quick", "ttp_plus", "ttp_paper", "ttp_final", "gnn_paper"):
+    for recipe in ("ttp_quick", "ttp_plus", "ttp_paper", "gnn_paper"):
         log = run(
             home,
             TRAIN,
