@@ -104,7 +104,7 @@ TABLES: dict[str, Table | Curves] = {  # by worth
         title="Decisions at a time",
         paper="LeRobot's policies are not in the paper.",
         axis="policy, and how many decisions it chooses from what it has seen once",
-        rows={f"ACT: {number}": act(number) for number in (1, 4, 16)}
+        rows={f"ACT: {number}": act(number) for number in (1, 4)}
         | {f"diffusion: {number}": diffusion(number) for number in (1, 4)},
         splits=("val",),
         metrics=("PE", "Score"),
