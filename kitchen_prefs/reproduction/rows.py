@@ -64,11 +64,3 @@ def act(decisions: int) -> Training:
     """LeRobot's ACT, which chooses several decisions at a time."""
     overrides = (f"--policy.chunk_size={decisions}", f"--policy.n_action_steps={decisions}")
     return Training(f"act-{decisions}", batch_size=64, overrides=overrides, recipe="act")
-
-
-def diffusion(decisions: int) -> Training:
-    """LeRobot's diffusion policy, which carries out as many decisions of its horizon."""
-    overrides = (f"--policy.n_action_steps={decisions}",)
-    return Training(
-        f"diffusion-{decisions}", batch_size=64, overrides=overrides, recipe="diffusion"
-    )

@@ -14,7 +14,6 @@ from kitchen_prefs.reproduction.rows import (
     UNPROMPTED,
     act,
     demonstrations,
-    diffusion,
     encoding,
     hidden,
     history,
@@ -103,12 +102,15 @@ TABLES: dict[str, Table | Curves] = {  # by worth
     "horizons": Table(
         title="Decisions at a time",
         paper="LeRobot's policies are not in the paper.",
-        axis="policy, and how many decisions it chooses from what it has seen once",
-        rows={f"ACT: {number}": act(number) for number in (1, 4)}
-        | {f"diffusion: {number}": diffusion(number) for number in (1, 4)},
+        axis="how many decisions ACT chooses from what it has seen once",
+        rows={str(number): act(number) for number in (1, 4)},
         splits=("val",),
         metrics=("PE", "Score"),
-        note="The recipes `act` and `diffusion` choose as many as do best here, on `val`.",
+        note=(
+            "The recipe `act` chooses one at a time. How many decisions `diffusion` carries out of "
+            "those that it has drawn is a matter of playing alone: `evaluate` takes "
+            "`--policy.n_action_steps`."
+        ),
     ),
     "final_state": Table(
         title="A prompt of the final arrangement alone",
