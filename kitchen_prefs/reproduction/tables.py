@@ -58,8 +58,8 @@ TABLES: dict[str, Table | Curves] = {  # by worth
             "The GNN rows are of the privileged track: the label is an input. There are twelve "
             "inputs for it, five of which `dishwasher-train-v1` never sets; the rows that end in "
             "`_all` are trained on `dishwasher-train-all-v1`, which shows all twelve preferences; "
-            "`gnn_tuned_all` goes on from `gnn_tuned`. LeRobot clips the norm of a gradient at 10 in "
-            "`gnn_paper`'s training, of which the paper says nothing. "
+            "`gnn_tuned_all` goes on from `gnn_tuned`. LeRobot clips gradients at a norm of 10 for "
+            "`gnn_paper`, of which the paper says nothing. "
             "Whoever is none of the twelve, as on `many_preferences`, has no input. TTP, in the "
             "standard track, reads a prompt instead."
         ),
