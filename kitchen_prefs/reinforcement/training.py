@@ -138,7 +138,9 @@ def _begin(
 
 def _saved_policy(checkpoint: Path) -> Any:
     folder = pretrained_model(checkpoint)
-    return read_policy(folder, read_config(folder, []))
+    policy = read_policy(folder, read_config(folder, []))
+    policy.config.pretrained_path = None  # where it lay on this machine is nobody's business
+    return policy
 
 
 class Watch(BaseCallback):

@@ -73,7 +73,7 @@ class Training:
 
     name: str
     dataset: str = f"dishwasher-train-v{DATA_VERSION}"
-    batch_size: int = 32  # the recipe's
+    batch_size: int = 32  # that of most recipes
     overrides: tuple[str, ...] = ()
     preference: int | None = None
     recipe: str = RECIPE

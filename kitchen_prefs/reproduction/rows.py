@@ -9,13 +9,13 @@ BASE = Training("base")  # all of the training data, everything as in the recipe
 TTP: dict[str, Policy] = {f"TTP, {name}": Committed(name) for name in ("ttp_paper", "ttp_plus")}
 QUICK = Committed("ttp_quick")
 GNN_IL: dict[str, Policy] = {
-    f"GNN-IL, {name}": Committed(name)
+    f"GNN-IL, {name} (privileged)": Committed(name)
     for name in ("gnn_paper", "gnn_paper_all", "gnn_tuned", "gnn_tuned_all")
 }
 GNN_RL: dict[str, Policy] = {
-    "GNN-RL, 32,000": Committed("gnn_rl_32k"),
-    "GNN-RL, 100,000": Committed("gnn_rl"),
-    "GNN-RL, masked, 100,000": Committed("gnn_rl_masked"),
+    "GNN-RL, 32,000 (open, privileged)": Committed("gnn_rl_32k"),
+    "GNN-RL, 100,000 (open, privileged)": Committed("gnn_rl"),
+    "GNN-RL, masked, 100,000 (open, privileged)": Committed("gnn_rl_masked"),
 }
 UNPROMPTED: dict[str, Policy] = {"ACT": Committed("act"), "diffusion": Committed("diffusion")}
 RULES: dict[str, Policy] = {

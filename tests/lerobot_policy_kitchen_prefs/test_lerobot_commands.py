@@ -140,7 +140,8 @@ def test_lerobots_act_trains_and_plays_unchanged(home):
 @pytest.mark.slow
 def test_lerobots_diffusion_trains_and_plays_unchanged(home):
     pytest.importorskip("diffusers", reason="wants `uv run --extra diffusion`")
-    train_and_play(home, "diffusion", "--policy.down_dims=[16]", "--policy.num_inference_steps=2")
+    small = ("--policy.down_dims=[16, 32]", "--policy.num_inference_steps=2")
+    train_and_play(home, "diffusion", *small)
 
 
 @pytest.mark.slow
@@ -219,4 +220,6 @@ def test_ttp_final_is_ttp_quick_with_another_prompt():
     quick, final = (yaml.safe_load(recipe_file(name).read_text()) for name in names)
     assert quick["policy"].pop("prompt_tokens") == "chosen"
     assert final["policy"].pop("prompt_tokens") == "final"
+    assert final.pop("steps") == 3 * quick.pop("steps")
+    assert final.pop("save_freq") == 2 * quick.pop("save_freq")
     assert quick == final
