@@ -23,20 +23,16 @@ class RowActions(gymnasium.Wrapper):
     A row that the decision may not choose, padding included, changes nothing, counts as a decision
     and is as forbidden as what the kitchen refuses. At an episode's end `info["PE"]` is its packing
     efficiency.
-
-    Args:
-        penalty: What a forbidden decision costs. The paper's reward has no penalty.
     """
 
     env: DishwasherLoading
 
-    def __init__(self, penalty: float = 0.0) -> None:
+    def __init__(self) -> None:
         super().__init__(DishwasherLoading(SPLIT, track="privileged"))
         spaces = self.env.observation_space
         assert isinstance(spaces, gymnasium.spaces.Dict)
         self.observation_space = gymnasium.spaces.Dict({key: spaces[key] for key in SHOWN})
         self.action_space = gymnasium.spaces.Discrete(instances.CAPACITY)
-        self._penalty = penalty
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
@@ -55,8 +51,6 @@ class RowActions(gymnasium.Wrapper):
         if instances.choosable(rows)[action]:
             observation, reward, terminated, _, info = self.env.step(rows[action, instances.POSE])
             self._seen = {key: observation[key] for key in SHOWN}
-        if info["refusal"]:
-            reward -= self._penalty
         truncated = not terminated and self._left == 0
         if terminated or truncated:
             info["PE"] = packing_efficiency(self.env.episode())

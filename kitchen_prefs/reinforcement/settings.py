@@ -27,7 +27,6 @@ class Settings:
         gae_lambda: Of advantage estimates.
         clip_range: How far an update may move the probability of a choice.
         entropy: Weight of the entropy that keeps choices varied.
-        penalty: What a forbidden decision costs.
         save_freq: Interactions between two checkpoints.
         seed: Of weights, sessions and choices.
     """
@@ -43,8 +42,7 @@ class Settings:
     gae_lambda: float = 0.95
     clip_range: float = 0.2
     entropy: float = 0.0
-    penalty: float = 0.0
-    save_freq: int = 16_000
+    save_freq: int = 4_000
     seed: int = 1000
 
     def __post_init__(self) -> None:

@@ -126,8 +126,7 @@ def _begin(
     # They run in this process: a decision takes a tenth of a millisecond, asking another process
     # as long.
     environments = DummyVecEnv(
-        [lambda: Monitor(RowActions(settings.penalty), info_keywords=("PE",))]
-        * settings.environments
+        [lambda: Monitor(RowActions(), info_keywords=("PE",))] * settings.environments
     )
     # Another seed than at the beginning: a run that goes on meets other sessions first.
     learner = make_learner(settings, policy, environments, settings.seed + done, masked)

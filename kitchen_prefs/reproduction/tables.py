@@ -61,9 +61,9 @@ TABLES: dict[str, Table | Curves] = {  # by worth
             "is none of the twelve, as on `many_preferences`, has no input. `gnn_paper`, "
             "`gnn_paper_all` and `gnn_tuned` learned from 128,000 decisions, `gnn_tuned_all` went "
             "on from `gnn_tuned` for 96,000, `ttp_quick` learned from 32,000. LeRobot clips "
-            "gradients at a norm of 10 for `gnn_paper`, of which the paper says nothing; its rows are drawn "
-            "by their probabilities, without which it packs half as much on `val`. TTP, in the "
-            "standard track, reads a prompt instead."
+            "gradients at a norm of 10 for `gnn_paper`, of which the paper says nothing; its rows "
+            "are drawn by their probabilities, without which it packs half as much on `val`. TTP, "
+            "in the standard track, reads a prompt instead."
         ),
     ),
     "reinforcement": Table(
@@ -134,8 +134,8 @@ TABLES: dict[str, Table | Curves] = {  # by worth
         note=(
             "`ttp_final` is `ttp_quick` with another prompt, trained three times as long: the "
             "dishes in both racks when each rack was last seen, without time. Which rack came "
-            "first is lost; which dish came first shows only in how far from the corner each stands, "
-            "and relabelling, which draws the places of its prompts at random, blurs that."
+            "first is lost; which dish came first shows only in how far from the corner each "
+            "stands, and relabelling, which draws the places of its prompts at random, blurs that."
         ),
     ),
     "attributes": Table(

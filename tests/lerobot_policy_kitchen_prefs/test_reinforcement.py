@@ -110,13 +110,13 @@ def test_sessions_are_the_published_ones_of_train_and_change():
     assert len(seen) > 3
 
 
-def test_what_cannot_be_chosen_is_forbidden_costs_and_counts():
-    environment = RowActions(penalty=0.5)
+def test_what_cannot_be_chosen_is_forbidden_and_counts():
+    environment = RowActions()
     before = deepcopy(environment.reset(seed=0)[0])
     limit = LIMIT_FACTOR * len(demonstrate(make_session("train", 0)).action)
     for decision in range(1, limit + 1):
         after, reward, terminated, truncated, info = environment.step(CAPACITY - 1)
-        assert reward == -0.5
+        assert reward == 0
         assert info["refusal"]
         assert not terminated
         assert truncated == (decision == limit)
@@ -184,6 +184,8 @@ def test_a_run_goes_on_and_learns(trained):
     before, after = weights(trained, 32), weights(trained, 64)
     assert all(not torch.equal(before[name], after[name]) for name in before)
     assert list((trained / "tensorboard").glob("events.*"))
+    config = json.loads((last / "pretrained_model" / "config.json").read_text())
+    assert config["pretrained_path"] is None
 
 
 def test_what_goes_on_is_what_was_saved(tmp_path):
