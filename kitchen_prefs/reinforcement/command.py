@@ -9,8 +9,6 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-from kitchen_prefs.files import make_folder
-
 app = typer.Typer()
 console = Console()
 
@@ -40,7 +38,6 @@ def reinforce(
     kitchen-prefs evaluate --split=seen --out=outputs/gnn_rl/evaluation
     --policy.path=outputs/gnn_rl/checkpoints/last/pretrained_model
     """
-    make_folder(out, "--out")
     from lerobot.utils.import_utils import register_third_party_plugins
 
     from kitchen_prefs.reinforcement.settings import read_settings

@@ -22,7 +22,7 @@ from tqdm import tqdm
 
 from kitchen_prefs.checkpoints import read_config, read_policy
 from kitchen_prefs.environment_config import OBS_INSTANCES, features_of
-from kitchen_prefs.files import write_json
+from kitchen_prefs.files import make_folder, write_json
 from kitchen_prefs.reinforcement.checkpoints import (
     interactions_of,
     last_checkpoint,
@@ -67,13 +67,14 @@ def reinforce(settings: Settings, interactions: int, masked: bool, run: Path) ->
     Raises:
         ValueError: If the folder holds a run with other settings, if the policy cannot learn from
             rewards, or if as many interactions cannot be played.
+        OSError: If the folder cannot be written.
     """
     told = json.loads(json.dumps({"masked": masked, **draccus.encode(settings)}))
     checkpoint = last_checkpoint(run)
     if interactions % settings.rollout:
         raise ValueError(
-            f"Between two updates {settings.rollout:,} decisions are played, of which "
-            f"{interactions:,} interactions are no multiple."
+            f"Interactions come in updates of {settings.rollout:,}; give a multiple of that, not "
+            f"{interactions:,}."
         )
     if checkpoint and _told_before(run) != told:
         raise ValueError(
@@ -81,6 +82,7 @@ def reinforce(settings: Settings, interactions: int, masked: bool, run: Path) ->
             "delete it."
         )
     learner, policy = _begin(settings, masked, checkpoint)
+    make_folder(run, "--out")
     write_json(run / SETTINGS, told)
     learner.set_logger(configure(str(run / "tensorboard"), ["tensorboard"]))
     begun, start = learner.num_timesteps, perf_counter()

@@ -239,7 +239,7 @@ def test_evaluate_plays_the_export_on_the_privileged_track(trained, tmp_path):
         ("--batch_size=12", "batch_size divides .* 32; 12 does not"),
         ("--environments=0", "environments is 0; it must be at least 1"),
         ("--policy.n_heads=0", "n_heads is 0; it must be at least 1"),
-        ("--interactions=33", "32 decisions are played, of which 33 interactions are no multiple"),
+        ("--interactions=33", "updates of 32; give a multiple of that, not 33"),
         ("--epoch=3", "no setting 'epoch'.*'epochs'"),
         ("--policy.failures=true", "failures"),
         ("--recipe=ttp_quick", "ttp_quick"),
