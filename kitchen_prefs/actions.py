@@ -1,5 +1,7 @@
 """An action is a pose, and a pose chooses a row of the instance set."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from kitchen_prefs import instances
@@ -7,7 +9,7 @@ from kitchen_prefs import instances
 METRES_PER_RADIAN = 0.1  # what a turn counts in the distance between two poses
 
 
-def nearest_row(rows: np.ndarray, action: np.ndarray) -> tuple[int, float]:
+def nearest_row(rows: np.ndarray, action: np.ndarray | Sequence[float]) -> tuple[int, float]:
     """The row that an action chooses.
 
     Args:

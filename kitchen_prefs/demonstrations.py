@@ -47,10 +47,11 @@ def demonstrate(session: Session) -> Demonstration:
     kitchen = Kitchen(session.dishes)
     observer = Observer(kitchen, session.generator("order"), None)
     view = KitchenView(kitchen)
-    observations, chosen, rewards = [], [], []
+    observations, flats, chosen, rewards = [], [], [], []
     for instance in expert_run(session).decisions:
         observation = observer.observe()
         observations.append(observation)
+        flats.append(observer.flat(observation))
         chosen.append(observation.row_of(instance))
         rewards.append(reward(view, session.preference, instance))
         kitchen.decide(instance)
@@ -58,8 +59,8 @@ def demonstrate(session: Session) -> Demonstration:
     rows = [observation.rows[row] for observation, row in zip(observations, chosen, strict=True)]
     return Demonstration(
         instances=np.stack([instances.pack(observation.rows) for observation in observations]),
-        environment_state=np.stack([o.environment_state for o in observations]),
-        state=np.stack([o.state for o in observations]),
+        environment_state=np.stack([environment_state for environment_state, _ in flats]),
+        state=np.stack([state for _, state in flats]),
         action=np.stack(rows)[:, instances.POSE],
         chosen_index=np.array(chosen, dtype=np.int64),
         reward=np.array(rewards, dtype=np.float32),

@@ -10,28 +10,20 @@ import gymnasium
 import numpy as np
 
 from kitchen_prefs import instances
-from kitchen_prefs import kitchen as k
-from kitchen_prefs.actions import nearest_row
 from kitchen_prefs.demonstrations import prompt_of
 from kitchen_prefs.expert import KitchenView, choose
-from kitchen_prefs.kitchen import Kitchen, Place, kind_of
+from kitchen_prefs.kitchen import Place
 from kitchen_prefs.metrics import Episode, success
-from kitchen_prefs.observations import (
-    ENVIRONMENT_STATE_SIZE,
-    FAILED_PICKS,
-    STATE_SIZE,
-    Observation,
-    Observer,
-)
-from kitchen_prefs.preferences import CATEGORIES, RACKS
+from kitchen_prefs.observations import ENVIRONMENT_STATE_SIZE, STATE_SIZE
+from kitchen_prefs.play import Play
+from kitchen_prefs.preferences import CATEGORIES
 from kitchen_prefs.rewards import reward
 from kitchen_prefs.scene.state import SceneState
-from kitchen_prefs.sessions import Session, expert_run, make_session, prompt_sessions
+from kitchen_prefs.sessions import Session, make_session, prompt_sessions
 from kitchen_prefs.splits import get_split, suggest
 
 TRACKS = ("standard", "privileged", "language")
 TASK = "Load the dishwasher as this person likes it, from one demonstration."
-LIMIT_FACTOR = 2  # an episode ends at twice the expert's number of decisions
 # One constant for the data version: LeRobot reads the first environment's for its whole batch.
 # Twice the longest expert of any published session is less (tests/kitchen_prefs/test_environment.py
 # measures it).
@@ -96,7 +88,7 @@ class DishwasherLoading(gymnasium.Env):
     @property
     def task_description(self) -> str:
         """One constant sentence, or the preference in words on the language track."""
-        return self._session.preference.in_words if self.track == "language" else TASK
+        return self.session.preference.in_words if self.track == "language" else TASK
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
@@ -137,16 +129,12 @@ class DishwasherLoading(gymnasium.Env):
         Raises:
             ValueError: If the action has another shape or is not finite.
         """
-        row, distance = nearest_row(self._seen.rows, action)
-        instance = int(self._seen.ids[row])
-        gained = reward(self._view, self._session.preference, instance)
-        early = instance == k.DOOR and self._door_closes_early()
-        refusal = self._decide(instance)
-        self._log(instance, action, refusal, early and not refusal)
-        terminated = self._kitchen.finished
-        truncated = not terminated and len(self._decisions) >= self._limit
+        instance, distance = self._play.choose(action)
+        gained = reward(self._view, self.session.preference, instance)
+        refusal = self._play.decide(instance, action)
         earned = gained if not refusal else 0.0
-        return self._observe(), earned, terminated, truncated, self._info(refusal, distance)
+        info = self._info(refusal, distance)
+        return self._observe(), earned, self._play.terminated, self._play.truncated, info
 
     def render(self) -> np.ndarray | None:
         """A picture of the kitchen, (H, W, 3) uint8, if `render_mode` is "rgb_array"."""
@@ -170,25 +158,27 @@ class DishwasherLoading(gymnasium.Env):
     @property
     def session(self) -> Session:
         """The session that is being played."""
-        return self._session
+        return self._play.session
 
     def instance_of(self, action: np.ndarray) -> int:
         """The instance that an action would choose now."""
-        return int(self._seen.ids[nearest_row(self._seen.rows, action)[0]])
+        return self._play.choose(action)[0]
 
     def expert_action(self) -> np.ndarray:
         """The action with which the expert would go on from here, (7,)."""
-        row = self._seen.row_of(choose(self._view, self._session.preference))
-        return self._seen.rows[row, instances.POSE]
+        seen = self._play.seen
+        row = seen.row_of(choose(self._view, self.session.preference))
+        return seen.rows[row, instances.POSE]
 
     def feasible_rows(self) -> np.ndarray:
         """The rows that the kitchen would carry out now, (N,) bool.
 
         An oracle, which no track tells: it knows, for one, which placements a dish blocks.
         """
+        seen = self._play.seen
         feasible = np.zeros(instances.CAPACITY, dtype=bool)
-        for row in np.flatnonzero(instances.choosable(self._seen.rows)):
-            feasible[row] = not self._kitchen.refusal(int(self._seen.ids[row]))
+        for row in np.flatnonzero(instances.choosable(seen.rows)):
+            feasible[row] = not self._play.kitchen.refusal(int(seen.ids[row]))
         return feasible
 
     def scene(self, opened: bool = False) -> SceneState:
@@ -198,7 +188,7 @@ class DishwasherLoading(gymnasium.Env):
             opened: Draw the door open and both racks pulled out, whatever they are, so that a
                 picture shows what is in them.
         """
-        kitchen = self._kitchen
+        kitchen = self._play.kitchen
         poses = kitchen.pose if opened else kitchen.pose_in_world()
         dishes = tuple(
             (CATEGORIES[kitchen.dishes.category[i]], pose[:3], pose[3:])
@@ -209,40 +199,12 @@ class DishwasherLoading(gymnasium.Env):
         return SceneState(*((True, True, True) if opened else joints), dishes)
 
     def digest(self) -> str:
-        """A hash of the kitchen's state."""
-        return self._kitchen.digest()
+        """A hash of the kitchen's state and of the decisions that led to it."""
+        return self._play.digest()
 
     def episode(self) -> Episode:
         """The facts of the episode so far, from which every metric is computed."""
-        session, kitchen = self._session, self._kitchen
-        expert = expert_run(session)
-        placed, wrong_rack = _standing(kitchen, session)
-        return Episode(
-            split=session.split,
-            session=session.index,
-            salt=session.salt,
-            preference=session.label,
-            count=session.count,
-            decisions=tuple(self._decisions),
-            kinds=tuple(kind_of(instance, session.dishes) for instance in self._decisions),
-            expert_decisions=expert.decisions,
-            expert_kinds=expert.kinds,
-            placed=placed,
-            expert_placed=_standing(expert.kitchen, session)[0],
-            wrong_rack=wrong_rack,
-            sunk=int((kitchen.place == Place.SINK).sum()),
-            expert_sunk=int((expert.kitchen.place == Place.SINK).sum()),
-            forbidden=tuple(self._forbidden),
-            blocked_places=sum(
-                refused and instance >= k.SINK
-                for refused, instance in zip(self._forbidden, self._decisions, strict=True)
-            ),
-            longest_loop=_longest_loop(self._decisions, self._forbidden),
-            closed_early=self._closed_early,
-            closed=kitchen.closed,
-            finished=kitchen.finished,
-            actions=tuple(self._actions),
-        )
+        return self._play.episode()
 
     # Inside -----------------------------------------------------------------------------------
 
@@ -257,55 +219,31 @@ class DishwasherLoading(gymnasium.Env):
         return int(self.np_random.integers(self.split.sessions)), int(salt)
 
     def _start(self, index: int, salt: int) -> None:
-        self._session = make_session(self.split.name, index, salt)
-        self._kitchen = Kitchen(self._session.dishes)
-        self._view = KitchenView(self._kitchen)
-        noise = self._session.generator("noise") if self.split.noisy else None
-        self._grasp = self._session.generator("grasp") if self.split.noisy else None
-        self._observer = Observer(self._kitchen, self._session.generator("order"), noise)
-        self._limit = LIMIT_FACTOR * len(expert_run(self._session).decisions)
-        sources = prompt_sessions(self._session, self.prompt_of, self.prompts)
+        session = make_session(self.split.name, index, salt)
+        self._play = Play(session)
+        self._view = KitchenView(self._play.kitchen)
+        sources = prompt_sessions(session, self.prompt_of, self.prompts)
         self._prompt = np.concatenate([prompt_of(source) for source in sources])
-        self._decisions: list[int] = []
-        self._actions: list[tuple[float, ...]] = []
-        self._forbidden: list[bool] = []
-        self._closed_early = 0
 
     def _observe(self) -> dict[str, np.ndarray]:
-        self._seen: Observation = self._observer.observe()
+        seen = self._play.seen
+        environment_state, state = self._play.observer.flat(seen)
         observation = {
-            "instances": instances.pack(self._seen.rows),
-            "environment_state": self._seen.environment_state,
-            "agent_pos": self._seen.state,
+            "instances": instances.pack(seen.rows),
+            "environment_state": environment_state,
+            "agent_pos": state,
             "prompt": self._prompt.copy(),
         }
         if self.track == "privileged":
-            observation["preference"] = np.array([self._session.label], dtype=np.float32)
+            observation["preference"] = np.array([self.session.label], dtype=np.float32)
         return observation
-
-    def _decide(self, instance: int) -> str:
-        fails = self._grasp is not None and self._grasp.random() < FAILED_PICKS
-        if fails and instance >= k.FIRST_DISH and self._kitchen.held is None:
-            return "The grasp failed."
-        return self._kitchen.decide(instance)
-
-    def _door_closes_early(self) -> bool:
-        kitchen = self._kitchen
-        waiting = len(kitchen.counter) > 0 or not kitchen.all_arrived
-        return kitchen.door_open and waiting
-
-    def _log(self, instance: int, action: np.ndarray, refusal: str, early: bool) -> None:
-        self._decisions.append(instance)
-        self._actions.append(tuple(float(value) for value in action))
-        self._forbidden.append(bool(refusal))
-        self._closed_early += early
 
     def _info(self, refusal: str, distance: float) -> dict[str, Any]:
         return {
-            "is_success": self._kitchen.finished and success(self.episode()),
+            "is_success": self._play.terminated and success(self.episode()),
             "refusal": refusal,
             "distance": distance,
-            "session": self._session.index,
+            "session": self.session.index,
         }
 
 
@@ -323,26 +261,3 @@ def _check_options(options: dict[str, Any]) -> None:
 
 def _box(*shape: int) -> gymnasium.spaces.Box:
     return gymnasium.spaces.Box(-np.inf, np.inf, shape, np.float32)
-
-
-def _standing(kitchen: Kitchen, session: Session) -> tuple[tuple[int, int], int]:
-    """The dishes that stand in their preferred rack, (top, bottom), and those in the other rack."""
-    standing = {"top": 0, "bottom": 0}
-    wrong = 0
-    for rack in RACKS:
-        for category in kitchen.dishes.category[kitchen.place == k.IN_RACK[rack]]:
-            right = session.preference.rack_of[CATEGORIES[category]] == rack
-            standing[rack] += right
-            wrong += not right
-    return (standing["top"], standing["bottom"]), wrong
-
-
-def _longest_loop(decisions: list[int], forbidden: list[bool]) -> int:
-    """The longest run of one forbidden choice that is repeated."""
-    longest = run = 0
-    previous = None
-    for instance, refused in zip(decisions, forbidden, strict=True):
-        run = (run + 1 if instance == previous else 1) if refused else 0
-        previous = instance if refused else None
-        longest = max(longest, run)
-    return longest

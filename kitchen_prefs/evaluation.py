@@ -72,7 +72,7 @@ def evaluate(
     --policy.type=rules --policy.rule=symbolic
     """
     names = _names(split)
-    settings = _settings(context.args)
+    settings = settings_of(context.args)
     make_folder(out, "--out")
     from kitchen_prefs.actors import load_actor
     from kitchen_prefs.evaluator import Evaluator
@@ -119,7 +119,7 @@ def _names(splits: Sequence[str]) -> list[str]:
     return list(dict.fromkeys(get_split(name).name for name in names))
 
 
-def _settings(arguments: Sequence[str]) -> list[str]:
+def settings_of(arguments: Sequence[str]) -> list[str]:
     """The --policy.SETTING=VALUE among the unknown arguments, as --SETTING=VALUE."""
     for argument in arguments:
         if not argument.startswith("--policy.") or "=" not in argument:

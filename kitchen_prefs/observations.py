@@ -57,14 +57,10 @@ class Observation:
     Attributes:
         rows: The instance set, (n, 13) float32, see `instances`.
         ids: The instance that each row stands for, (n,) int.
-        environment_state: The flat summary, (E,) float32, see ENVIRONMENT_STATE.
-        state: Joints, category in hand and decision index, (S,) float32, see STATE.
     """
 
     rows: np.ndarray
     ids: np.ndarray
-    environment_state: np.ndarray
-    state: np.ndarray
 
     def row_of(self, instance: int) -> int:
         """The row of a choosable instance."""
@@ -95,14 +91,28 @@ class Observer:
         extents, position = self._perceive()
         objects = self._object_rows(dishes, extents, position)  # (3 + d, 13)
         places, place_ids = self._place_rows(extents)  # (p, 13)
-        summary = self._summary(dishes, objects[3:])
         ids = np.concatenate([OBJECT_IDS, k.FIRST_DISH + dishes, place_ids])
         rows = np.concatenate([objects, places])  # (n, 13)
         rows[:, instances.DECISION] = self._decision
         order = self._order.permutation(len(rows))
-        state = np.concatenate([self._joints(), self._in_hand(), [self._decision]])
         self._decision += 1
-        return Observation(rows[order], ids[order], summary, state.astype(np.float32))
+        return Observation(rows[order], ids[order])
+
+    def flat(self, seen: Observation) -> tuple[np.ndarray, np.ndarray]:
+        """What the last observation says without its set.
+
+        Args:
+            seen: The last observation; the kitchen stands as it did then.
+
+        Returns:
+            The summary of the set, (E,) float32, see ENVIRONMENT_STATE; joints, category in hand
+            and decision index, (S,) float32, see STATE.
+        """
+        dishes = self._kitchen.visible_dishes()
+        rows = seen.rows[np.argsort(seen.ids)][len(OBJECT_IDS) : len(OBJECT_IDS) + len(dishes)]
+        decision = [self._decision - 1]
+        state = np.concatenate([self._joints(), self._in_hand(), decision])  # (S,)
+        return self._summary(dishes, rows), state.astype(np.float32)
 
     def _perceive(self) -> tuple[np.ndarray, np.ndarray]:
         """The extents and the position of each dish as they appear now, (n, 3) each."""

@@ -6,8 +6,9 @@ import gymnasium
 import numpy as np
 
 from kitchen_prefs import instances
-from kitchen_prefs.environment import LIMIT_FACTOR, DishwasherLoading
+from kitchen_prefs.environment import DishwasherLoading
 from kitchen_prefs.metrics import packing_efficiency
+from kitchen_prefs.play import LIMIT_FACTOR
 from kitchen_prefs.sessions import expert_run
 
 # The sessions that demonstrations are of, so that imitation and reinforcement see the same people

@@ -29,6 +29,7 @@ ORDER = (
     "rewards",
     "demonstrations",
     "metrics",
+    "play",
     "environment",
     "environment_config",
     "datasets",

@@ -12,14 +12,10 @@ from scipy.stats import chisquare
 from kitchen_prefs import instances
 from kitchen_prefs import kitchen as k
 from kitchen_prefs.actions import nearest_row
-from kitchen_prefs.environment import (
-    LIMIT_FACTOR,
-    MAX_EPISODE_STEPS,
-    TASK,
-    DishwasherLoading,
-)
+from kitchen_prefs.environment import MAX_EPISODE_STEPS, TASK, DishwasherLoading
 from kitchen_prefs.environment_config import KitchenPrefsEnv
 from kitchen_prefs.metrics import edit_similarity, packing_efficiency
+from kitchen_prefs.play import LIMIT_FACTOR
 from kitchen_prefs.scene import layout
 from kitchen_prefs.sessions import expert_run, make_session
 from kitchen_prefs.splits import SPLITS, TEST_SPLITS
