@@ -1,1 +1,1 @@
-"""The leaderboard: submissions that carry no score (a later version)."""
+"""The leaderboard: submissions that carry no score, replayed and ranked."""

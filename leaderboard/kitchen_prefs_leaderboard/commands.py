@@ -1,0 +1,191 @@
+"""`kitchen-prefs leaderboard`: submit, score, verify, show.
+
+LeRobot and torch take seconds to import, so the commands import what needs them when they run.
+"""
+
+import os
+import secrets
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+
+from kitchen_prefs.environment import FRESH_SALTS
+from kitchen_prefs.files import make_folder
+
+app = typer.Typer(
+    name="leaderboard",
+    help="Submissions that carry no score: make one, score it, verify it, show it.",
+    no_args_is_help=True,
+)
+console = Console()
+
+Jobs = Annotated[int, typer.Option(help="How many splits at once, a core for each.", min=1)]
+CORES = os.cpu_count() or 1
+PolicyPath = Annotated[
+    str | None, typer.Option("--policy.path", help="A checkpoint's folder, or its hub name.")
+]
+PolicyType = Annotated[
+    str | None, typer.Option("--policy.type", help="A policy that needs no training.")
+]
+Verifications = Annotated[Path, typer.Option(help="Keeps what re-runs came to.")]
+KEPT = Path("leaderboard/verifications")
+ANY_SETTING = {"allow_extra_args": True, "ignore_unknown_options": True}
+
+
+class Form(StrEnum):
+    """How scores are printed."""
+
+    TABLE = "table"
+    JSON = "json"
+    CSV = "csv"
+
+
+class Groups(StrEnum):
+    """What scores are broken down by."""
+
+    PREFERENCE = "preference"
+    COUNT = "count"
+
+
+@app.command(context_settings=ANY_SETTING)
+def submit(
+    context: typer.Context,
+    name: Annotated[str, typer.Option(help="What the row is called.")],
+    track: Annotated[str, typer.Option(help="standard, privileged, language or open.")],
+    out: Annotated[Path, typer.Option(help="The submission's folder.")],
+    path: PolicyPath = None,
+    policy_type: PolicyType = None,
+    author: Annotated[list[str], typer.Option(help="Who submits; several.")] = ["anonymous"],  # noqa: B006
+    link: Annotated[str | None, typer.Option(help="Where to read more.")] = None,
+    hardware: Annotated[
+        str | None, typer.Option(help="What it was trained on.", show_default="this machine")
+    ] = None,
+    training: Annotated[
+        str | None,
+        typer.Option(help="On what, how long.", show_default="what train_config.json says"),
+    ] = None,
+    jobs: Jobs = CORES,
+) -> None:
+    """Let a policy play the test splits and write what it did as a submission.
+
+    The episodes are kept in OUT-episodes, so a command that was killed goes on.
+    Any other --policy.SETTING=VALUE overrides a setting of the policy.
+
+    For example:
+    kitchen-prefs leaderboard submit --name="My TTP" --track=standard --out=outputs/my_ttp
+    --policy.path=outputs/ttp_quick/checkpoints/last/pretrained_model
+    """
+    make_folder(out.parent, "--out")
+    from kitchen_prefs_leaderboard import submitting
+    from kitchen_prefs_leaderboard.playing import load_player
+
+    submitting.check_replaceable(out)
+    player = load_player(path, policy_type, context.args, track)
+    submission = submitting.describe(
+        name=name,
+        authors=author,
+        link=link,
+        track=track,
+        policy=submitting.played_by(player.actor),
+        hardware=hardware or submitting.this_machine(),
+        training=training or submitting.training_of(Path(path or "")),
+    )
+    played = player.play(out.with_name(f"{out.name}-episodes"), salt=0, jobs=jobs)
+    submitting.write_submission(submission, played, out)
+    console.print(f"The submission is {out}. `kitchen-prefs leaderboard score {out}` scores it.")
+
+
+@app.command()
+def score(
+    folders: Annotated[list[Path], typer.Argument(metavar="DIR", help="Submissions.")],
+    form: Annotated[Form, typer.Option("--format", help="How to print.")] = Form.TABLE,
+    by: Annotated[Groups | None, typer.Option(help="Break down.", show_default="not")] = None,
+    jobs: Jobs = CORES,
+) -> None:
+    """Replay every action of submissions and print every metric.
+
+    For example:
+    kitchen-prefs leaderboard score outputs/my_ttp
+    kitchen-prefs leaderboard score leaderboard/submissions/* --format=csv --by=count
+    """
+    from kitchen_prefs_leaderboard import output
+    from kitchen_prefs_leaderboard.scoring import score_submissions
+
+    entries = score_submissions(folders, jobs)
+    if form is Form.TABLE:
+        for entry in entries:
+            console.print(*output.to_tables(entry, by), sep="\n")
+        return
+    write = output.to_json if form is Form.JSON else output.to_csv
+    typer.echo(write(entries, by), nl=False)
+
+
+@app.command(context_settings=ANY_SETTING)
+def verify(
+    context: typer.Context,
+    folder: Annotated[Path, typer.Argument(metavar="DIR", help="A submission.")],
+    rerun: Annotated[bool, typer.Option("--rerun", help="Let the policy play again.")] = False,
+    path: PolicyPath = None,
+    policy_type: PolicyType = None,
+    salt: Annotated[
+        int | None, typer.Option(help="Draws the fresh sessions.", min=1, show_default="at random")
+    ] = None,
+    verifications: Verifications = KEPT,
+    out: Annotated[Path, typer.Option(help="Keeps the episodes.")] = Path("outputs/verify"),
+    jobs: Jobs = CORES,
+) -> None:
+    """Check that a submission's actions lead where it says, and with --rerun who chose them.
+
+    A re-run lets the policy play again, on the test splits and on sessions that nobody knew when
+    the submission was made. What it came to is kept; only rows with such a record are ranked.
+
+    For example:
+    kitchen-prefs leaderboard verify leaderboard/submissions/ttp_plus --rerun
+    --policy.path=policies/checkpoints/ttp_plus
+    """
+    from kitchen_prefs_leaderboard.scoring import score_submissions
+
+    if rerun:
+        make_folder(out, "--out")
+        make_folder(verifications, "--verifications")
+    elif path or policy_type or context.args:
+        raise ValueError("A policy plays again with --rerun only; add it.")
+    (entry,) = score_submissions([folder], jobs)
+    console.print(f"All actions of {folder} lead where it says.", markup=False)
+    if not rerun:
+        console.print("Who chose them only a re-run tells: --rerun --policy.path=CHECKPOINT.")
+        return
+    from kitchen_prefs_leaderboard import output, verification
+    from kitchen_prefs_leaderboard.playing import load_player
+
+    player = load_player(path, policy_type, context.args, entry.submission.track)
+    salt = salt or secrets.randbelow(FRESH_SALTS) + 1
+    found = verification.run_again(entry, player, salt, out / entry.digest[:12], jobs)
+    file = verification.write_verification(found, verifications)
+    console.print(output.to_comparison(found), f"The record is {file}.", sep="\n")
+
+
+@app.command()
+def page(
+    folders: Annotated[list[Path], typer.Argument(metavar="DIR", help="Submissions.")],
+    out: Annotated[Path, typer.Option(help="The HTML file.")],
+    verifications: Verifications = KEPT,
+    jobs: Jobs = CORES,
+) -> None:
+    """Replay submissions and show them in one HTML file that needs no network.
+
+    For example:
+    kitchen-prefs leaderboard page leaderboard/submissions/* --out=outputs/leaderboard.html
+    """
+    make_folder(out.parent, "--out")
+    from kitchen_prefs_leaderboard.page.building import write_page
+    from kitchen_prefs_leaderboard.ranking import rank
+    from kitchen_prefs_leaderboard.scoring import score_submissions
+    from kitchen_prefs_leaderboard.verification import read_verifications
+
+    verified = read_verifications(verifications)
+    write_page(rank(score_submissions(folders, jobs), verified), verified, out)
+    console.print(f"The page is {out}; a browser opens it without a server.")

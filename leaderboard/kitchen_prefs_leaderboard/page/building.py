@@ -1,0 +1,144 @@
+"""Building the page: entries as plain data, and the data in the page.
+
+What a submission says is a stranger's. It stands in the page as JSON in which no HTML can begin,
+and the scripts show it as text alone.
+"""
+
+import base64
+import hashlib
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict
+from importlib.resources import files
+from pathlib import Path
+from string import Template
+from typing import Any
+
+from kitchen_prefs.files import whole_file
+from kitchen_prefs.metrics import METRICS, Episode, Interval, packing_efficiency, summarise
+from kitchen_prefs.splits import DATA_VERSION, TEST_SPLITS, get_split
+from kitchen_prefs_leaderboard.page.drawing import (
+    episode_data,
+    layout_data,
+    preferences_in_words,
+    sessions_data,
+)
+from kitchen_prefs_leaderboard.ranking import Row
+from kitchen_prefs_leaderboard.scoring import MEAN
+from kitchen_prefs_leaderboard.verification import Verification
+
+TEMPLATES = files("kitchen_prefs_leaderboard.page") / "templates"
+# In this order they make up one script.
+SCRIPTS = ("basics", "table", "charts", "shortcomings", "kitchen", "drawing", "player", "page")
+DIGITS = 4
+# What is drawn by the number of dishes: a split with training's numbers and one with others.
+BY_COUNT = {
+    "Preferences of the training": ("seen", "unseen_counts"),
+    "Preferences that training does not see": ("unseen_preferences", "unseen_both"),
+}
+# Nothing is fetched, nothing is sent, and only this file's own style and script are used.
+POLICY = (
+    "default-src 'none'; style-src {style}; script-src {script}; img-src data:; "
+    "base-uri 'none'; form-action 'none'"
+)
+
+
+def write_page(
+    tables: Mapping[str, Sequence[Row]], verified: Mapping[str, Verification], out: Path
+) -> None:
+    """Write the leaderboard as one HTML file, whole or not at all.
+
+    Args:
+        tables: The rows of each track.
+        verified: Re-runs that confirm an entry, by its digest.
+        out: The file.
+    """
+    html = to_html(page_data(tables, verified))
+    with whole_file(out) as beside:
+        beside.write_text(html, encoding="utf-8")
+
+
+def page_data(
+    tables: Mapping[str, Sequence[Row]], verified: Mapping[str, Verification]
+) -> dict[str, Any]:
+    """All that the page shows."""
+    rows = [row for of_track in tables.values() for row in of_track]
+    sessions = sessions_data(TEST_SPLITS)
+    return {
+        "version": DATA_VERSION,
+        "mean": MEAN,
+        "metrics": list(METRICS),
+        "splits": {split: get_split(split).sessions for split in TEST_SPLITS},
+        "reasons": list(rows[0].entry.shortcomings[TEST_SPLITS[0]]),
+        "entries": [_entry_data(row, verified.get(row.entry.digest)) for row in rows],
+        "layout": layout_data(),
+        "preferences": preferences_in_words(sessions),
+        "sessions": sessions,
+    }
+
+
+def to_html(data: Mapping[str, Any]) -> str:
+    """The page that shows some data."""
+    style = _template("page.css")
+    script = "\n".join(_template(f"{name}.js") for name in SCRIPTS)
+    return Template(_template("page.html")).substitute(
+        policy=POLICY.format(style=_hash(style), script=_hash(script)),
+        style=style,
+        script=script,
+        data=_harmless(data),
+    )
+
+
+def _entry_data(row: Row, verification: Verification | None) -> dict[str, Any]:
+    entry = row.entry
+    return {
+        "submission": entry.submission.model_dump(exclude={"format", "fingerprints"}),
+        "digest": entry.digest,
+        "rank": row.rank,
+        "tied": row.tied,
+        "verification": verification and verification.model_dump(exclude={"digest", "checkpoint"}),
+        "metrics": {
+            split: {name: _numbers(interval) for name, interval in of_split.items()}
+            for split, of_split in entry.metrics.items()
+        },
+        "by_count": {
+            name: _by_count([episode for split in splits for episode in entry.episodes[split]])
+            for name, splits in BY_COUNT.items()
+        },
+        "shortcomings": {split: list(of.values()) for split, of in entry.shortcomings.items()},
+        "episodes": {
+            split: [episode_data(episode) for episode in episodes]
+            for split, episodes in entry.episodes.items()
+        },
+    }
+
+
+def _by_count(episodes: Sequence[Episode]) -> list[list[float]]:
+    """PE for each number of dishes per rack: the number, mean, low, high."""
+    counts = sorted({episode.count for episode in episodes})
+    groups = {count: [e for e in episodes if e.count == count] for count in counts}
+    return [
+        [count, *_numbers(summarise(group, packing_efficiency))] for count, group in groups.items()
+    ]
+
+
+def _numbers(interval: Interval) -> list[float]:
+    return [round(value, DIGITS) for value in asdict(interval).values()]
+
+
+def _harmless(data: Mapping[str, Any]) -> str:
+    """JSON in which neither a tag nor a character reference can stand."""
+    text = json.dumps(data, separators=(",", ":"), allow_nan=False)
+    for character in "<>&":
+        text = text.replace(character, f"\\u{ord(character):04x}")
+    return text
+
+
+def _template(name: str) -> str:
+    return (TEMPLATES / name).read_text(encoding="utf-8")
+
+
+def _hash(content: str) -> str:
+    """How a content security policy names what stands in a style or script element."""
+    digest = hashlib.sha256(content.encode()).digest()
+    return f"'sha256-{base64.b64encode(digest).decode()}'"

@@ -1,0 +1,218 @@
+const shown = new Set(); // the entries whose boxes are ticked
+
+/** What a view of the table shows: all metrics of one split, or one metric on all splits. */
+function columnsOf(view) {
+  const [kind, name] = view.split(":");
+  if (kind === "split") {
+    return data.metrics.map((metric) => ({
+      title: metric,
+      values: (entry) => entry.metrics[name][metric],
+    }));
+  }
+  return [data.mean, ...SPLITS].map((split) => ({
+    title: words(split),
+    values: (entry) => entry.metrics[split][name],
+  }));
+}
+
+function rankOf(entry) {
+  if (entry.rank === null) return "\u2013";
+  return entry.tied ? `${entry.rank} =` : `${entry.rank}`;
+}
+
+function badges(entry) {
+  const again = entry.rank !== null;
+  return html(
+    "span",
+    { class: "badges" },
+    html("span", { class: "badge" }, entry.submission.track),
+    html("span", { class: again ? "badge good" : "badge" }, again ? "re-run" : "replayed only"),
+  );
+}
+
+/** Everything that an entry says of itself, and what its re-run came to. */
+function about(entry) {
+  const { submission, verification } = entry;
+  const { type, parameters, checkpoint } = submission.policy;
+  const size = parameters === null ? "" : `, ${parameters.toLocaleString("en")} parameters`;
+  const packages = Object.entries(submission.packages).map(([name, one]) => `${name} ${one}`);
+  const facts = [
+    ["By", submission.authors.join(", ")],
+    ["Policy", type + size],
+    ["Hardware", submission.hardware],
+    ["Training", submission.training],
+    ["Programs", packages.join(", ")],
+    ["Submission", entry.digest],
+  ];
+  if (submission.link !== null) facts.splice(1, 0, ["More", linkTo(submission.link)]);
+  if (checkpoint !== null) facts.push(["Checkpoint", checkpoint]);
+  if (verification !== null) facts.push(["Re-run", rerunInWords(verification)]);
+  return html(
+    "dl",
+    { class: "about" },
+    ...facts.flatMap(([term, fact]) => [html("dt", {}, term), html("dd", {}, fact)]),
+  );
+}
+
+function rerunInWords({ same, replayed, rerun, fresh, salt }) {
+  const scores = [["replayed", replayed], ["run again", rerun], [`fresh (salt ${salt})`, fresh]];
+  const parts = scores.map(([name, { mean, low, high }]) =>
+    `${name} ${fixed(mean)} (${fixed(low)} to ${fixed(high)})`);
+  return `${Math.round(100 * same)} % of the episodes decided alike. Score: ${parts.join(", ")}.`;
+}
+
+function rowOf(entry, columns) {
+  const index = data.entries.indexOf(entry);
+  const { name, authors } = entry.submission;
+  const box = html("input", {
+    type: "checkbox",
+    "aria-label": `Show ${name} in the pictures`,
+    change: () => {
+      if (box.checked) shown.add(index);
+      else shown.delete(index);
+      drawCharts();
+    },
+  });
+  box.checked = shown.has(index);
+  const details = html("details", {}, html("summary", {}, name), about(entry));
+  const row = html(
+    "tr",
+    {},
+    html("td", { class: "tick" }, box),
+    html("td", { class: "rank" }, rankOf(entry)),
+    html("th", { scope: "row", class: "name" }, details,
+      html("span", { class: "by" }, authors.join(", ")), badges(entry)),
+    ...columns.map(({ values }) => numbers(values(entry))),
+  );
+  row.entry = entry;
+  return row;
+}
+
+function numbers([mean, low, high]) {
+  return html("td", { class: "number" }, html("b", {}, fixed(mean)),
+    html("small", {}, `${fixed(low)} to ${fixed(high)}`));
+}
+
+/** What rows are sorted by: a key for each column, and whether large ones come first. */
+function sorters(columns) {
+  return [
+    { title: "Rank", key: (entry) => data.entries.indexOf(entry), down: false },
+    { title: "Name", key: (entry) => entry.submission.name.toLowerCase(), down: false },
+    ...columns.map(({ title, values }) => ({
+      title, key: (entry) => values(entry)[0], down: true, number: true,
+    })),
+  ];
+}
+
+function sortBy(table, header, { key }, down) {
+  for (const other of table.tHead.rows[0].cells) other.removeAttribute("aria-sort");
+  header.setAttribute("aria-sort", down ? "descending" : "ascending");
+  for (const block of table.tBodies) {
+    const rows = [...block.rows].filter((row) => row.entry);
+    rows.sort((a, b) => {
+      const [one, other] = [key(a.entry), key(b.entry)];
+      const order = one < other ? -1 : Number(one > other);
+      return down ? -order : order;
+    });
+    block.append(...rows);
+  }
+}
+
+function headerOf(table, sorter) {
+  const header = html("th", { scope: "col", class: sorter.number ? "number" : "" });
+  const click = () => {
+    const now = header.getAttribute("aria-sort");
+    sortBy(table, header, sorter, now ? now === "ascending" : sorter.down);
+  };
+  header.append(html("button", { type: "button", click }, sorter.title));
+  return header;
+}
+
+/** A track's table: the ranked entries, then those that were only replayed. */
+function trackTable(track, columns) {
+  const entries = data.entries.filter(({ submission }) => submission.track === track);
+  const table = html("table", {}, html("caption", { class: "unseen" }, `${track} track`));
+  const headers = sorters(columns).map((sorter) => headerOf(table, sorter));
+  headers[0].setAttribute("aria-sort", "ascending");
+  const show = html("span", { class: "unseen" }, "Show");
+  const tick = html("th", { scope: "col", class: "tick" }, show);
+  table.append(html("thead", {}, html("tr", {}, tick, ...headers)));
+  const ranked = entries.filter(({ rank }) => rank !== null);
+  const rest = entries.filter(({ rank }) => rank === null);
+  if (ranked.length) table.append(block("re-run", ranked, columns));
+  if (rest.length) table.append(block("replayed only", rest, columns));
+  const title = `${track[0].toUpperCase()}${track.slice(1)} track`;
+  return html(
+    "section",
+    { class: "track", "data-track": track },
+    html("h3", {}, title, html("span", { class: "meaning" }, TRACKS[track])),
+    html("div", { class: "scroll card", tabindex: 0, role: "region", "aria-label": title }, table),
+  );
+}
+
+function block(title, entries, columns) {
+  const cell = html("th", { colspan: columns.length + 3, scope: "rowgroup" }, title);
+  return html("tbody", { "data-block": title }, html("tr", { class: "block" }, cell),
+    ...entries.map((entry) => rowOf(entry, columns)));
+}
+
+function drawTables() {
+  const columns = columnsOf(byId("columns").value);
+  const tracks = Object.keys(TRACKS).filter((track) =>
+    data.entries.some(({ submission }) => submission.track === track));
+  byId("tables").replaceChildren(...tracks.map((track) => trackTable(track, columns)));
+  filterTables();
+}
+
+function matches({ submission }, text) {
+  const { name, authors, policy, hardware, training } = submission;
+  const said = [name, ...authors, policy.type, hardware, training].join("\n");
+  return said.toLowerCase().includes(text);
+}
+
+/** Hide what was not searched for, and tables and blocks of which nothing is left. */
+function filterTables() {
+  const text = byId("search").value.trim().toLowerCase();
+  const track = byId("track").value;
+  let found = 0;
+  for (const section of document.querySelectorAll(".track")) {
+    let ofTrack = 0;
+    for (const body of section.querySelectorAll("tbody")) {
+      const rows = [...body.rows].filter((row) => row.entry);
+      for (const row of rows) row.hidden = !matches(row.entry, text);
+      const left = rows.filter((row) => !row.hidden).length;
+      body.hidden = left === 0;
+      ofTrack += left;
+    }
+    section.hidden = ofTrack === 0 || (track !== "all" && track !== section.dataset.track);
+    if (!section.hidden) found += ofTrack;
+  }
+  byId("found").textContent = `${found} of ${data.entries.length} entries`;
+}
+
+/** The best three of each track stand in the pictures first. */
+function tickBest() {
+  const taken = {};
+  data.entries.forEach(({ submission: { track } }, index) => {
+    taken[track] = (taken[track] ?? 0) + 1;
+    if (taken[track] <= 3) shown.add(index);
+  });
+}
+
+function startTables() {
+  const tracks = [...new Set(data.entries.map(({ submission }) => submission.track))];
+  setOptions(byId("track"), [["all", "all tracks"], ...tracks.map((track) => [track, track])]);
+  const ofSplits = [data.mean, ...SPLITS].map((split) => html("option", { value: `split:${split}` },
+    split === data.mean ? "mean over the splits" : words(split)));
+  const ofMetrics = data.metrics.map((metric) =>
+    html("option", { value: `metric:${metric}` }, `${metric} on every split`));
+  byId("columns").replaceChildren(
+    html("optgroup", { label: "All metrics" }, ...ofSplits),
+    html("optgroup", { label: "All splits" }, ...ofMetrics),
+  );
+  byId("columns").addEventListener("change", drawTables);
+  byId("track").addEventListener("change", filterTables);
+  byId("search").addEventListener("input", filterTables);
+  tickBest();
+  drawTables();
+}

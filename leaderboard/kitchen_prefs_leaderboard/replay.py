@@ -1,0 +1,83 @@
+"""Replays: the kitchen plays a submission's actions again, and says what came of them."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from kitchen_prefs.metrics import Episode
+from kitchen_prefs.play import Play
+from kitchen_prefs.sessions import make_session
+from kitchen_prefs_leaderboard.reading import read_lines
+from kitchen_prefs_leaderboard.submission import ACTIONS, Line
+
+DECIMALS = 4  # a tenth of a millimetre, as in the data sets
+
+
+def replay_split(folder: Path, split: str) -> list[Episode]:
+    """Play a submission's episodes of a split again.
+
+    Raises:
+        ValueError: If the file is not what the format says, or if an episode does not begin or end
+            as it says.
+    """
+    return [
+        replay(split, line, f"{folder / ACTIONS[split]}, line {number}")
+        for number, line in enumerate(read_lines(folder, split), start=1)
+    ]
+
+
+def replay(split: str, line: Line, where: str) -> Episode:
+    """Play one episode again.
+
+    Args:
+        split: The split of the session.
+        line: What is said of the episode.
+        where: Names the line in errors.
+
+    Raises:
+        ValueError: If the session does not begin as the line says, if the actions end too early or
+            too late, or if the last state is another one.
+    """
+    play = Play(make_session(split, line.session))
+    if play.digest() != line.first:
+        raise ValueError(f"{where}: session {line.session} of {split} does not begin so.")
+    for number, action in enumerate(line.actions, start=1):
+        if play.terminated or play.truncated:
+            raise ValueError(f"{where}: the episode ends before action {number}.")
+        play.act(action)
+    if not (play.terminated or play.truncated):
+        raise ValueError(f"{where}: the episode goes on after the last action.")
+    if play.digest() != line.last:
+        raise ValueError(f"{where}: the actions do not lead to the last state that it names.")
+    return play.episode()
+
+
+def write_line(episode: Episode) -> Line:
+    """Say of an episode what a submission says of it.
+
+    Actions are rounded, except one that would then choose another instance.
+
+    Args:
+        episode: An episode of a published session.
+    """
+    play = Play(make_session(episode.split, episode.session))
+    first = play.digest()
+    actions: list[Sequence[float]] = []
+    for action, instance in zip(episode.actions, episode.decisions, strict=True):
+        rounded = _rounded(action)
+        actions.append(rounded if play.choose(rounded)[0] == instance else action)
+        play.decide(instance, actions[-1])
+    return Line(
+        session=episode.session,
+        first=first,
+        actions=[(x, y, z, w, i, j, k) for x, y, z, w, i, j, k in actions],
+        last=play.digest(),
+    )
+
+
+def _rounded(action: Sequence[float]) -> list[float]:
+    return [round(value, DECIMALS) for value in action]
+
+
+def to_jsonl(lines: Sequence[Line]) -> bytes:
+    """Lines as they stand in a file, before compression."""
+    return b"".join(line.model_dump_json().encode() + b"\n" for line in lines)

@@ -1,0 +1,147 @@
+"""What a submission is worth: every metric, from replays alone."""
+
+import hashlib
+from collections.abc import Iterable, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import product
+from pathlib import Path
+
+from tqdm import tqdm
+
+from kitchen_prefs.datasets.manifest import published_fingerprint
+from kitchen_prefs.metrics import (
+    METRICS,
+    Episode,
+    Interval,
+    mean_of_splits,
+    score,
+    shortcomings,
+    summarise,
+)
+from kitchen_prefs.splits import DATA_VERSION, TEST_SPLITS
+from kitchen_prefs_leaderboard.reading import files_of, read_description
+from kitchen_prefs_leaderboard.replay import replay_split
+from kitchen_prefs_leaderboard.submission import Submission
+
+MEAN = "mean"  # stands beside the splits' names: each split counts the same
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A submission and what its actions led to.
+
+    Attributes:
+        submission: Who acted.
+        digest: A hash of all of the submission's files.
+        episodes: The episodes of each test split.
+    """
+
+    submission: Submission
+    digest: str
+    episodes: dict[str, list[Episode]]
+
+    @cached_property
+    def metrics(self) -> dict[str, dict[str, Interval]]:
+        """Each metric on each test split, and its mean over them."""
+        of_splits = {
+            split: {name: summarise(episodes, metric) for name, metric in METRICS.items()}
+            for split, episodes in self.episodes.items()
+        }
+        splits = list(self.episodes.values())
+        mean = {name: mean_of_splits(splits, metric) for name, metric in METRICS.items()}
+        return {**of_splits, MEAN: mean}
+
+    @cached_property
+    def shortcomings(self) -> dict[str, dict[str, int]]:
+        """For each test split, in how many episodes each thing went wrong."""
+        return {
+            split: _count(shortcomings(episode) for episode in episodes)
+            for split, episodes in self.episodes.items()
+        }
+
+    def grouped(self, by: str) -> dict[str, dict[str, dict[str, Interval]]]:
+        """Each metric on each split's groups.
+
+        Args:
+            by: "preference" or "count".
+        """
+        return {
+            split: {
+                str(group): {
+                    name: summarise([e for e in episodes if getattr(e, by) == group], metric)
+                    for name, metric in METRICS.items()
+                }
+                for group in sorted({getattr(episode, by) for episode in episodes})
+            }
+            for split, episodes in self.episodes.items()
+        }
+
+
+def score_submissions(folders: Sequence[Path], jobs: int) -> list[Entry]:
+    """Read and replay submissions.
+
+    Args:
+        folders: The submissions.
+        jobs: How many splits are replayed at once, a process for each.
+
+    Raises:
+        ValueError: If one is not what the format says, or does not lead where it says.
+    """
+    submissions = [read_known(folder) for folder in folders]
+    work = list(product(folders, TEST_SPLITS))
+    with ProcessPoolExecutor(jobs) as pool:
+        replays = pool.map(replay_split, *zip(*work, strict=True))
+        bar = tqdm(replays, "Replaying", len(work), unit="split", leave=False)
+        episodes = dict(zip(work, bar, strict=True))
+    return [
+        Entry(submission, digest_of(folder), {s: episodes[folder, s] for s in TEST_SPLITS})
+        for folder, submission in zip(folders, submissions, strict=True)
+    ]
+
+
+def read_known(folder: Path) -> Submission:
+    """Read who acted, on data that this version of the benchmark has.
+
+    Raises:
+        ValueError: If it is no submission, or of another version of the data.
+    """
+    submission = read_description(folder)
+    if submission.data_version != DATA_VERSION:
+        raise ValueError(
+            f"{folder} is of data version {submission.data_version}; this version of "
+            f"kitchen_prefs replays version {DATA_VERSION}."
+        )
+    for name, fingerprint in submission.fingerprints.items():
+        if published_fingerprint(name) != fingerprint:
+            raise ValueError(f"{folder} was made with another data set {name!r}.")
+    return submission
+
+
+def digest_of(folder: Path) -> str:
+    """A hash of all of a submission's files."""
+    sha = hashlib.sha256()
+    for name, content in files_of(folder):
+        sha.update(f"{name} {len(content)}\n".encode())
+        sha.update(content)
+    return sha.hexdigest()
+
+
+def difference(entry: Entry, other: Entry) -> Interval:
+    """How much better an entry is by Score than another on the same sessions.
+
+    The paired bootstrap: the sessions are resampled, and each brings the difference of both.
+    """
+    theirs = {(e.split, e.session): score(e) for of in other.episodes.values() for e in of}
+    return mean_of_splits(
+        list(entry.episodes.values()), lambda e: score(e) - theirs[e.split, e.session]
+    )
+
+
+def _count(each: Iterable[dict[str, int]]) -> dict[str, int]:
+    counted: dict[str, int] = {}
+    for reasons in each:
+        for reason, times in reasons.items():
+            counted[reason] = counted.get(reason, 0) + (times > 0)
+    return counted

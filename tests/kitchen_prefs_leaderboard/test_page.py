@@ -1,0 +1,329 @@
+"""The leaderboard's page in a browser: Debian's chromium, without a network."""
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from kitchen_prefs import instances
+from kitchen_prefs import kitchen as k
+from kitchen_prefs.play import Play
+from kitchen_prefs.sessions import make_session
+from kitchen_prefs.splits import TEST_SPLITS, get_split
+from kitchen_prefs_leaderboard import commands, scoring
+from kitchen_prefs_leaderboard.page.building import write_page
+from kitchen_prefs_leaderboard.ranking import rank
+from kitchen_prefs_leaderboard.scoring import Entry, score_submissions
+from kitchen_prefs_leaderboard.verification import Means, Verification
+
+playwright = pytest.importorskip("playwright.sync_api")
+
+CHROMIUM = Path("/usr/bin/chromium")
+PATIENCE = 120_000  # milliseconds; the machine may be busy
+HTML_NAME = "<img src=x onerror=document.title='run'></script><b>"
+PHONE = {"width": 390, "height": 844}
+
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(not CHROMIUM.exists(), reason="needs Debian's chromium"),
+]
+
+
+def played_carelessly(split, index):
+    """An episode that begins with a forbidden decision and puts all into the top rack."""
+    play = Play(make_session(split, index))
+
+    def decide(instance):
+        row = play.seen.row_of(instance)
+        return play.decide(instance, play.seen.rows[row, instances.POSE])
+
+    for instance in (k.TOP_RACK, k.DOOR, k.TOP_RACK):
+        decide(instance)
+    while len(counter := play.kitchen.counter) and not play.truncated:
+        decide(k.FIRST_DISH + int(counter[0]))
+        if play.kitchen.held is not None and not play.truncated:
+            category = int(play.kitchen.dishes.category[play.kitchen.held])
+            free = play.kitchen.free("top", category)
+            decide(k.FIRST_PLACEMENT["top"] + int(free[0]) if len(free) else k.SINK)
+    for instance in (k.TOP_RACK, k.DOOR):
+        if not play.truncated:
+            decide(instance)
+    return play.episode()
+
+
+@pytest.fixture(scope="module")
+def entries(expert_files, tmp_path_factory):
+    """The expert, which was run again, and three more on two tracks, which were not."""
+    folder = tmp_path_factory.mktemp("expert")
+    for name, content in expert_files.items():
+        (folder / name).write_bytes(content)
+    (expert,) = score_submissions([folder], 1)
+    careless = {
+        split: [played_carelessly(split, i) for i in range(get_split(split).sessions)]
+        for split in TEST_SPLITS
+    }
+
+    def other(name, track, episodes):
+        about = {"name": name, "track": track, "link": "https://example.org/?a=1&b=2"}
+        return Entry(expert.submission.model_copy(update=about), name, episodes)
+
+    return [
+        expert,
+        other("Careless", "privileged", careless),
+        other("Honest", "privileged", expert.episodes),
+        other(HTML_NAME, "open", careless),
+    ]
+
+
+@pytest.fixture(scope="module")
+def verified(entries):
+    """A re-run that confirms the expert."""
+    means = Means(mean=1, low=1, high=1)
+    return {
+        entries[0].digest: Verification(
+            digest=entries[0].digest,
+            checkpoint="0" * 64,
+            packages={"torch": "2"},
+            salt=1,
+            same=1,
+            replayed=means,
+            rerun=means,
+            fresh=means,
+            confirmed=True,
+        )
+    }
+
+
+@pytest.fixture(scope="module")
+def tables(entries, verified):
+    """The rows of each track."""
+    return rank(entries, verified)
+
+
+@pytest.fixture(scope="module")
+def file(tables, verified, tmp_path_factory):
+    """The page."""
+    out = tmp_path_factory.mktemp("page") / "leaderboard.html"
+    write_page(tables, verified, out)
+    return out
+
+
+@pytest.fixture(scope="module")
+def browser():
+    """A browser without a window."""
+    with playwright.sync_playwright() as driver:
+        browser = driver.chromium.launch(
+            executable_path=str(CHROMIUM), args=["--no-sandbox"], timeout=PATIENCE
+        )
+        yield browser
+        browser.close()
+
+
+@pytest.fixture
+def page(browser, file):
+    """The page, opened; at the end nothing was complained of and nothing was fetched."""
+    page = browser.new_page(viewport={"width": 1280, "height": 900})
+    page.set_default_timeout(PATIENCE)
+    complaints, requests = [], []
+    page.on("console", lambda message: complaints.append(message.text))
+    page.on("pageerror", lambda error: complaints.append(str(error)))
+    page.on("request", lambda request: requests.append(request.url))
+    page.goto(file.as_uri())
+    yield page
+    page.close()
+    assert complaints == []
+    assert [url for url in requests if not url.startswith("data:")] == [file.as_uri()]
+
+
+def names(page, track="privileged", block="replayed only"):
+    """The names in a block of a track's table that are not hidden."""
+    rows = page.locator(f'[data-track="{track}"] tbody[data-block="{block}"] tr:visible summary')
+    return rows.all_text_contents()
+
+
+def open_careless(page):
+    """Open the first session of the imperfect entry."""
+    page.locator("#player-entry").select_option(label="Careless (privileged)")
+
+
+def test_ranked_rows_stand_first_and_the_others_have_no_rank(page):
+    assert names(page, block="re-run") == ["The expert"]
+    assert names(page) == ["Honest", "Careless"]
+    ranks = page.locator('[data-track="privileged"] td.rank').all_text_contents()
+    assert ranks == ["1", "\u2013", "\u2013"]
+
+
+def test_a_tie_shows(tables, verified, tmp_path, browser):
+    tied = {
+        track: [replace(row, rank=2, tied=True) for row in rows] for track, rows in tables.items()
+    }
+    out = tmp_path / "tied.html"
+    write_page(tied, verified, out)
+    page = browser.new_page()
+    page.goto(out.as_uri(), timeout=PATIENCE)
+    assert set(page.locator("td.rank").all_text_contents()) == {"2 ="}
+    page.close()
+
+
+def test_a_header_sorts_within_the_blocks(page):
+    table = page.locator('[data-track="privileged"]')
+    header = table.get_by_role("columnheader", name="PE")
+    header.get_by_role("button").click()
+    assert header.get_attribute("aria-sort") == "descending"
+    assert names(page) == ["Honest", "Careless"]
+    header.get_by_role("button").press("Enter")
+    assert header.get_attribute("aria-sort") == "ascending"
+    assert names(page) == ["Careless", "Honest"]
+    assert names(page, block="re-run") == ["The expert"]
+    assert table.locator("[aria-sort]").count() == 1
+
+
+def test_text_and_track_filter(page):
+    page.get_by_label("Search").fill("CARELESS")
+    assert names(page) == ["Careless"]
+    assert page.get_by_role("status").text_content() == "1 of 4 entries"
+    page.get_by_label("Search").fill("")
+    page.locator("#track").select_option("open")
+    assert not page.locator('[data-track="privileged"]').is_visible()
+    assert names(page, track="open") == [HTML_NAME]
+
+
+def test_columns_show_every_metric_of_every_split(page, tables):
+    rows = [row.entry for of_track in tables.values() for row in of_track]
+    for split in (scoring.MEAN, *TEST_SPLITS):
+        page.get_by_label("Columns").select_option(f"split:{split}")
+        shown = (
+            page.locator("td.number b").filter(visible=True).all_text_contents()[: 6 * len(rows)]
+        )
+        wanted = [i.mean for entry in rows for i in entry.metrics[split].values()]
+        assert [float(text.replace("\u2212", "-")) for text in shown] == pytest.approx(
+            wanted, abs=6e-4
+        )
+    page.get_by_label("Columns").select_option("metric:PE")
+    heads = page.locator('[data-track="open"] thead th').all_text_contents()
+    assert heads == ["Show", "Rank", "Name", "mean", *(s.replace("_", " ") for s in TEST_SPLITS)]
+
+
+def test_ticked_rows_stand_in_the_pictures(page):
+    assert page.locator("#chart-legend li").count() == 4
+    assert page.locator("#by-split svg").count() == len(TEST_SPLITS)
+    page.get_by_label("Show Careless in the pictures").uncheck()
+    assert page.locator("#chart-legend li").count() == 3
+    assert "Careless" not in page.locator("#by-count svg").first.get_attribute("aria-label")
+
+
+def test_names_are_text(page):
+    assert page.locator("img").count() == 0
+    assert page.locator("script").count() == 2
+    assert page.title() == "kitchen_prefs leaderboard"
+    assert names(page, track="open") == [HTML_NAME]
+    link = page.locator('[data-track="open"] a')
+    assert link.get_attribute("rel") == "noopener noreferrer nofollow"
+
+
+def test_data_cannot_close_its_element(file):
+    html = file.read_text()
+    data = html.split('<script type="application/json" id="data">')[1].split("</script>")[0]
+    assert not set("<>&") & set(data)
+    assert HTML_NAME in {e["submission"]["name"] for e in json.loads(data)["entries"]}
+
+
+def test_an_episode_steps_to_its_end(page, entries):
+    open_careless(page)
+    episode = entries[1].episodes["seen"][0]
+    page.get_by_role("button", name="Next").click()
+    assert (
+        page.locator("#policy-said").text_content().startswith("forbidden: pulls the top rack out")
+    )
+    page.get_by_role("button", name="Last").click()
+    decided = len(episode.decisions)
+    assert page.locator("#policy-step").text_content() == f"{decided} of {decided}"
+    racked = page.locator(
+        '#policy-drawing [data-place="top"], #policy-drawing [data-place="bottom"]'
+    )
+    assert racked.count() == sum(episode.placed) + episode.wrong_rack
+    assert page.locator('#policy-drawing [data-place="sink"]').count() == episode.sunk
+    expert = page.locator(
+        '#expert-drawing [data-place="top"], #expert-drawing [data-place="bottom"]'
+    )
+    assert expert.count() == sum(episode.expert_placed)
+
+
+def test_every_episode_ends_as_the_kitchen_says(page, tables):
+    ends = page.evaluate(
+        """() => data.entries.map((entry) => SPLITS.map((split) =>
+            entry.episodes[split].map(([decisions, forbidden], number) => {
+                const { steps } = replay(data.sessions[split][number], decisions, forbidden);
+                const { places, doorOpen, out } = steps.at(-1).state;
+                const count = (place) => places.filter((one) => one === place).length;
+                return [count("top") + count("bottom"), count("sink"), !doorOpen && out === null];
+            })))"""
+    )
+    rows = [row.entry for of_track in tables.values() for row in of_track]
+    assert ends == [
+        [
+            [[sum(e.placed) + e.wrong_rack, e.sunk, e.closed] for e in entry.episodes[split]]
+            for split in TEST_SPLITS
+        ]
+        for entry in rows
+    ]
+
+
+def test_the_keyboard_plays(page):
+    open_careless(page)
+    page.locator("#player").focus()
+    slider = page.locator("#slider")
+    for key, step in (("ArrowRight", 1), ("ArrowRight", 2), ("ArrowLeft", 1), ("Home", 0)):
+        page.keyboard.press(key)
+        assert slider.input_value() == str(step)
+    page.keyboard.press("End")
+    assert slider.input_value() == slider.get_attribute("max")
+    slider.focus()
+    page.keyboard.press("ArrowLeft")
+    assert int(slider.input_value()) == int(slider.get_attribute("max")) - 1
+    page.get_by_role("button", name="Play").press("Enter")
+    page.get_by_role("button", name="Pause").wait_for(state="hidden")  # one step, and it is done
+    assert slider.input_value() == slider.get_attribute("max")
+
+
+def test_a_shortcoming_opens_its_episodes(page, entries):
+    page.locator("#reasons-entry").select_option(label="Careless (privileged)")
+    wrong = entries[1].shortcomings["seen"]["wrong rack"]
+    page.get_by_role("button", name=f"{wrong} episodes of seen: wrong rack").click()
+    assert page.locator("#player-session option").count() == wrong
+    assert "wrong rack" in page.locator("#episode-facts").text_content()
+
+
+def test_a_phone_scrolls_tables_and_not_the_page(page):
+    page.set_viewport_size(PHONE)
+    for summary in page.locator("summary").all():
+        summary.click()
+    assert page.evaluate("document.documentElement.scrollWidth") <= PHONE["width"]
+    boxes = page.locator(".scroll").evaluate_all(
+        "all => all.map(box => box.scrollWidth > box.clientWidth)"
+    )
+    assert any(boxes)
+
+
+def test_the_theme_toggles(page):
+    def ground():
+        return page.evaluate("getComputedStyle(document.body).backgroundColor")
+
+    light = ground()
+    page.get_by_role("button", name="Dark").click()
+    assert ground() != light
+    page.get_by_role("button", name="Light").click()
+    assert ground() == light
+
+
+def test_the_command_writes_the_page(entries, file, verified, tmp_path, monkeypatch):
+    monkeypatch.setattr(scoring, "score_submissions", lambda folders, jobs: entries)
+    for digest, verification in verified.items():
+        (tmp_path / f"{digest}.json").write_text(verification.model_dump_json())
+    out = tmp_path / "new" / "page.html"
+    options = ["page", "any", f"--out={out}", f"--verifications={tmp_path}"]
+    result = CliRunner().invoke(commands.app, options)
+    assert result.exit_code == 0, result.output
+    assert out.read_bytes() == file.read_bytes()

@@ -1,0 +1,190 @@
+"""What a scorer refuses: whatever was changed, and what it says of it."""
+
+import gzip
+import json
+import os
+
+import pytest
+
+from kitchen_prefs_leaderboard.reading import MOST_LINES
+from kitchen_prefs_leaderboard.replay import replay_split
+from kitchen_prefs_leaderboard.scoring import read_known, score_submissions
+
+SEEN = "seen.jsonl.gz"
+
+
+def lines_of(folder):
+    return gzip.decompress((folder / SEEN).read_bytes()).splitlines()
+
+
+def write(folder, lines):
+    (folder / SEEN).write_bytes(gzip.compress(b"\n".join(lines) + b"\n"))
+
+
+def edited(line, **changes):
+    return json.dumps(json.loads(line) | changes).encode()
+
+
+def refused(folder, message):
+    with pytest.raises(ValueError, match=message) as error:
+        replay_split(folder, "seen")
+    assert "\n" not in str(error.value)
+    return str(error.value)
+
+
+def test_an_honest_submission_is_the_expert(submission):
+    (entry,) = score_submissions([submission], 1)
+    for split, metrics in entry.metrics.items():
+        assert metrics["PE"].mean == 1
+        assert metrics["Score"].mean == (
+            1 if split not in ("noisy", "mean") else pytest.approx(1, abs=0.02)
+        )
+
+
+def test_the_same_files_give_the_same_entry(submission):
+    first, second = (score_submissions([submission], 1)[0] for _ in range(2))
+    assert first == second
+
+
+def test_actions_of_another_session(submission):
+    lines = lines_of(submission)
+    lines[0] = edited(lines[1], session=0)
+    write(submission, lines)
+    refused(submission, "line 1: session 0 of seen does not begin so")
+
+
+def test_reordered_lines(submission):
+    lines = lines_of(submission)
+    write(submission, [lines[1], lines[0], *lines[2:]])
+    refused(submission, "line 1 is session 1; each session stands there once")
+
+
+def test_a_line_that_is_there_twice(submission):
+    lines = lines_of(submission)
+    write(submission, [lines[0], *lines])
+    refused(submission, "line 2 is session 0")
+
+
+def test_a_line_that_is_missing(submission):
+    write(submission, lines_of(submission)[:-1])
+    refused(submission, "has 69 episodes; seen has 70 sessions")
+
+
+def test_a_line_that_is_cut_off(submission):
+    lines = lines_of(submission)
+    write(submission, [lines[0][:200], *lines[1:]])
+    refused(submission, "line 1 is not what the format says")
+
+
+@pytest.mark.parametrize("position", [5, 10, -2])
+def test_an_action_that_was_changed(submission, position):
+    lines = lines_of(submission)
+    actions = json.loads(lines[3])["actions"]
+    actions[position] = actions[position - 1]
+    lines[3] = edited(lines[3], actions=actions)
+    write(submission, lines)
+    refused(submission, "line 4: the ")
+
+
+def test_actions_after_the_end(submission):
+    lines = lines_of(submission)
+    actions = json.loads(lines[0])["actions"]
+    lines[0] = edited(lines[0], actions=[*actions, actions[-1]])
+    write(submission, lines)
+    refused(submission, "line 1: the episode ends before action")
+
+
+def test_an_end_that_is_left_out(submission):
+    lines = lines_of(submission)
+    lines[0] = edited(lines[0], actions=json.loads(lines[0])["actions"][:-1])
+    write(submission, lines)
+    refused(submission, "line 1: the episode goes on after the last action")
+
+
+def test_a_forbidden_decision_that_is_hidden(submission):
+    """A failed grasp changes nothing in the kitchen, yet who leaves it out is found out."""
+    file = submission / "noisy.jsonl.gz"
+    lines = gzip.decompress(file.read_bytes()).splitlines()
+    episodes = replay_split(submission, "noisy")
+    number, failed = next(
+        (e.session, e.forbidden.index(True)) for e in episodes if any(e.forbidden)
+    )
+    actions = json.loads(lines[number])["actions"]
+    lines[number] = edited(lines[number], actions=actions[:failed] + actions[failed + 1 :])
+    file.write_bytes(gzip.compress(b"\n".join(lines) + b"\n"))
+    with pytest.raises(ValueError, match=f"line {number + 1}: "):
+        replay_split(submission, "noisy")
+
+
+@pytest.mark.parametrize(
+    "number", ["NaN", "Infinity", "1e999", "1e4000", "9" * 5000, '"1"', "null", "true"]
+)
+def test_numbers_that_are_none(submission, number):
+    lines = lines_of(submission)
+    pose = f"[{number},0,0,1,0,0,0]"
+    lines[0] = b'{"session":0,"first":"%s","actions":[%s],"last":"%s"}' % (
+        b"0" * 64,
+        pose.encode(),
+        b"0" * 64,
+    )
+    write(submission, lines)
+    refused(submission, "line 1 is not what the format says")
+
+
+def test_a_bomb(submission):
+    (submission / SEEN).write_bytes(gzip.compress(b"[" * (MOST_LINES * 20)))
+    refused(submission, "holds more than")
+
+
+def test_deep_nesting(submission):
+    (submission / SEEN).write_bytes(gzip.compress(b"[" * 100_000))
+    refused(submission, "line 1 is not what the format says")
+
+
+def test_no_gzip(submission):
+    (submission / SEEN).write_bytes(b"\x00" * 1000)
+    refused(submission, "is not a gzip file")
+
+
+def test_a_large_file(submission):
+    (submission / SEEN).write_bytes(os.urandom(1024 * 1024 + 1))
+    refused(submission, "is larger than 1,048,576 bytes")
+
+
+def test_a_link(submission):
+    (submission / SEEN).unlink()
+    (submission / SEEN).symlink_to("/dev/zero")
+    refused(submission, "cannot be read")
+
+
+def test_a_pipe_is_not_waited_for(submission):
+    (submission / SEEN).unlink()
+    os.mkfifo(submission / SEEN)
+    refused(submission, "is not a regular file")
+
+
+@pytest.mark.parametrize(
+    ("field", "value"),
+    [
+        ("name", ""),
+        ("name", "a\nb"),
+        ("name", "x" * 61),
+        ("track", "secret"),
+        ("link", "javascript:alert(1)"),
+        ("data_version", True),
+        ("score", 1.0),
+        ("authors", []),
+    ],
+)
+def test_descriptions_that_are_none(submission, field, value):
+    file = submission / "submission.json"
+    file.write_text(json.dumps(json.loads(file.read_bytes()) | {field: value}))
+    with pytest.raises(ValueError, match=f"submission.json is not what the format says: {field}"):
+        read_known(submission)
+
+
+def test_another_version_of_the_data(submission):
+    file = submission / "submission.json"
+    file.write_text(json.dumps(json.loads(file.read_bytes()) | {"data_version": 2}))
+    with pytest.raises(ValueError, match="is of data version 2"):
+        read_known(submission)
