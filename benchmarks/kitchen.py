@@ -1,4 +1,4 @@
-"""Decisions a second of the kitchen and of the environment, beside CartPole's steps."""
+"""Decisions a second of kitchen, environment and replays, beside CartPole's steps."""
 
 from collections.abc import Iterator
 
@@ -8,8 +8,10 @@ import numpy as np
 from benchmarks.measuring import Result, rates
 from kitchen_prefs.environment import DishwasherLoading
 from kitchen_prefs.kitchen import Kitchen
+from kitchen_prefs.metrics import Episode
 from kitchen_prefs.observations import Observer
 from kitchen_prefs.sessions import expert_run, make_session
+from kitchen_prefs_leaderboard.replay import replay, write_line
 
 SESSIONS = range(0, 70, 5)
 
@@ -20,6 +22,7 @@ def kitchen_decisions() -> Iterator[Result]:
     total = sum(map(len, decisions))
     environment = DishwasherLoading("seen")
     actions = {i: list(_actions(environment, i)) for i in SESSIONS}
+    lines = [write_line(_played(environment, i, actions[i])) for i in SESSIONS]
     cartpole = gymnasium.make("CartPole-v1").unwrapped
 
     def rules() -> int:
@@ -45,6 +48,11 @@ def kitchen_decisions() -> Iterator[Result]:
                 environment.step(action)
         return total
 
+    def replays() -> int:
+        for line in lines:
+            replay("seen", line, "a line")
+        return total
+
     def cartpole_steps() -> int:
         cartpole.reset(seed=0)
         for _ in range(1000):
@@ -56,8 +64,9 @@ def kitchen_decisions() -> Iterator[Result]:
         "kitchen: rules alone",
         "kitchen: rules and instance sets",
         "environment: step, reset included",
+        "leaderboard: replay",
     )
-    *found, yardstick = rates(rules, rules_and_sets, steps, cartpole_steps)
+    *found, yardstick = rates(rules, rules_and_sets, steps, replays, cartpole_steps)
     for name, rate in zip(names, found, strict=True):
         yield Result(name, rate, "decisions/s", "CartPole-v1 steps", yardstick)
 
@@ -69,3 +78,10 @@ def _actions(environment: DishwasherLoading, session: int) -> Iterator[np.ndarra
         action = environment.expert_action()
         yield action
         terminated = environment.step(action)[2]
+
+
+def _played(environment: DishwasherLoading, session: int, actions: list[np.ndarray]) -> Episode:
+    environment.reset(options={"session": session})
+    for action in actions:
+        environment.step(action)
+    return environment.episode()

@@ -22,7 +22,7 @@ app = typer.Typer(
 )
 console = Console()
 
-Jobs = Annotated[int, typer.Option(help="How many splits at once, a core for each.", min=1)]
+Jobs = Annotated[int, typer.Option(help="How many processes, a core for each.", min=1)]
 CORES = os.cpu_count() or 1
 PolicyPath = Annotated[
     str | None, typer.Option("--policy.path", help="A checkpoint's folder, or its hub name.")

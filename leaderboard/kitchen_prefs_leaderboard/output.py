@@ -3,10 +3,11 @@
 import csv
 import io
 import json
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict
 
 from rich.table import Table
+from rich.text import Text
 
 from kitchen_prefs.metrics import METRICS, Interval
 from kitchen_prefs_leaderboard.scoring import Entry
@@ -16,22 +17,20 @@ DIGITS = 4  # the bootstrap tells no more than three; a fourth keeps rounding ou
 
 
 def to_tables(entry: Entry, by: str | None) -> Iterator[Table]:
-    """An entry's metrics for the terminal."""
-    metrics = Table("Split", *METRICS, title=entry.submission.name)
+    """An entry's metrics for the terminal; each mean stands above its 95 % interval."""
+    metrics = _table(entry.submission.name, "Split", *METRICS)
     for split, of_split in entry.metrics.items():
-        metrics.add_row(split, *(_lines(of_split[name]) for name in METRICS))
+        metrics.add_row(split, *_cells(of_split))
     yield metrics
     if by:
-        groups = Table(
-            "Split", by.capitalize(), *METRICS, title=f"{entry.submission.name}, by {by}"
-        )
+        groups = _table(f"{entry.submission.name}, by {by}", "Split", *METRICS)
         for split, of_groups in entry.grouped(by).items():
             for group, of_group in of_groups.items():
-                groups.add_row(split, group, *(_lines(of_group[name]) for name in METRICS))
+                groups.add_row(f"{split}\n{by} {group}", *_cells(of_group))
         yield groups
-    reasons = Table("Episodes that fell short by", *entry.episodes)
-    for reason in next(iter(entry.shortcomings.values())):
-        reasons.add_row(reason, *(str(of[reason]) for of in entry.shortcomings.values()))
+    reasons = _table("Episodes that fell short", "Split", *next(iter(entry.shortcomings.values())))
+    for split, counts in entry.shortcomings.items():
+        reasons.add_row(split, *map(str, counts.values()))
     yield reasons
 
 
@@ -39,7 +38,7 @@ def to_comparison(found: Verification) -> Table:
     """A re-run beside the replay, for the terminal."""
     verdict = "confirmed" if found.confirmed else "NOT confirmed"
     title = f"{verdict}; {found.same:.0%} of the episodes were decided alike"
-    table = Table("Score", "Mean", "95 % interval", title=title)
+    table = _table(title, "Score", "Mean", "95 % interval")
     rows = {"replayed": found.replayed, "run again": found.rerun, "fresh sessions": found.fresh}
     for name, means in rows.items():
         table.add_row(name, f"{means.mean:.3f}", f"{means.low:.3f} to {means.high:.3f}")
@@ -80,8 +79,23 @@ def to_csv(entries: Sequence[Entry], by: str | None) -> str:
     return file.getvalue()
 
 
-def _lines(interval: Interval) -> str:
-    return f"{interval.mean:.3f}\n{interval.low:.3f}..{interval.high:.3f}"
+def _table(title: str, *heads: str) -> Table:
+    """A table that fits into 80 columns; a title is a stranger's and no markup."""
+    table = Table(title=Text(title), box=None, padding=(0, 1, 0, 0))
+    first, *rest = heads
+    table.add_column(first, no_wrap=True)
+    for head in rest:
+        table.add_column(head, justify="right", min_width=9)  # "forbidden"
+    return table
+
+
+def _cells(metrics: Mapping[str, Interval]) -> list[str]:
+    return [f"{of.mean:.3f}\n{_short(of.low)} {_short(of.high)}" for of in metrics.values()]
+
+
+def _short(value: float) -> str:
+    """Two decimals, and no zero before the point."""
+    return f"{value:.2f}".replace("0.", ".", 1)
 
 
 def _numbers(interval: Interval) -> dict[str, float]:

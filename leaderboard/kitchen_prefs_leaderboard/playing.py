@@ -1,20 +1,16 @@
-"""A LeRobot policy plays the test splits, a process for each split."""
+"""A LeRobot policy plays the test splits, on several cores."""
 
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
-from tqdm import tqdm
-
 from kitchen_prefs.actors import Actor, load_actor
 from kitchen_prefs.evaluation import settings_of
 from kitchen_prefs.metrics import Episode
 from kitchen_prefs.records import read_episodes
 from kitchen_prefs.reproduction.processes import run_module
-from kitchen_prefs.splits import TEST_SPLITS
-
-LONGEST = ("unseen_counts", "many_preferences", "unseen_both")
+from kitchen_prefs.splits import TEST_SPLITS, get_split
 
 
 @dataclass(frozen=True)
@@ -35,7 +31,7 @@ class Player:
         Args:
             folder: Keeps the episodes.
             salt: 0 for the published sessions, else fresh ones.
-            jobs: How many splits are played at once.
+            jobs: How many processes share the splits.
 
         Returns:
             The episodes of each split, in the order of the sessions.
@@ -44,19 +40,30 @@ class Player:
             OSError: If an evaluation fails; the message names its log.
         """
         folder.mkdir(parents=True, exist_ok=True)
-        splits = sorted(TEST_SPLITS, key=lambda split: split not in LONGEST)  # they begin first
 
-        def evaluate(split: str) -> None:
-            where = [f"--split={split}", f"--out={folder}", f"--salt={salt}"]
+        def evaluate(splits: Sequence[str]) -> None:
+            where = [f"--split={','.join(splits)}", f"--out={folder}", f"--salt={salt}"]
             arguments = ["evaluate", *self.named, *where]
-            run_module("kitchen_prefs.cli", arguments, folder / f"{split}.log", split)
+            run_module("kitchen_prefs.cli", arguments, folder / f"{splits[0]}.log", "Playing")
 
         with ThreadPoolExecutor(jobs) as pool:
-            list(tqdm(pool.map(evaluate, splits), "Playing", len(splits), unit="split"))
+            list(pool.map(evaluate, shares(jobs)))
         return {
             split: sorted(read_episodes(folder / f"{split}.jsonl"), key=lambda one: one.session)
             for split in TEST_SPLITS
         }
+
+
+def shares(jobs: int) -> list[list[str]]:
+    """The test splits, shared out so that each process plays about as many sessions.
+
+    A process for each split would load LeRobot six times, which takes longer than some splits.
+    """
+    shared: list[list[str]] = [[] for _ in range(min(jobs, len(TEST_SPLITS)))]
+    sessions = {split: get_split(split).sessions for split in TEST_SPLITS}
+    for split in sorted(TEST_SPLITS, key=lambda split: -sessions[split]):
+        min(shared, key=lambda of_process: sum(sessions[s] for s in of_process)).append(split)
+    return shared
 
 
 def load_player(

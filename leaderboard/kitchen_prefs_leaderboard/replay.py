@@ -39,7 +39,9 @@ def replay(split: str, line: Line, where: str) -> Episode:
     """
     play = Play(make_session(split, line.session))
     if play.digest() != line.first:
-        raise ValueError(f"{where}: session {line.session} of {split} does not begin so.")
+        raise ValueError(
+            f"{where}: session {line.session} of {split} begins in another state than this."
+        )
     for number, action in enumerate(line.actions, start=1):
         if play.terminated or play.truncated:
             raise ValueError(f"{where}: the episode ends before action {number}.")

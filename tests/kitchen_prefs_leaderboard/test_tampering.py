@@ -50,7 +50,7 @@ def test_actions_of_another_session(submission):
     lines = lines_of(submission)
     lines[0] = edited(lines[1], session=0)
     write(submission, lines)
-    refused(submission, "line 1: session 0 of seen does not begin so")
+    refused(submission, "line 1: session 0 of seen begins in another state")
 
 
 def test_reordered_lines(submission):
