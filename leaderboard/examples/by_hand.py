@@ -3,7 +3,7 @@
 python leaderboard/examples/by_hand.py outputs/by_hand
 """
 
-import gzip
+import bz2
 import json
 import sys
 from pathlib import Path
@@ -30,7 +30,7 @@ about = {
 (folder / "submission.json").write_text(json.dumps(about))
 for split in SPLITS:
     env = gymnasium.make("kitchen_prefs/DishwasherLoading-v0", split=split).unwrapped
-    with gzip.open(folder / f"{split}.jsonl.gz", "wt") as file:
+    with bz2.open(folder / f"{split}.jsonl.bz2", "wt") as file:
         for session in range(env.split.sessions):
             observation, _ = env.reset(options={"session": session})
             line = {"session": session, "first": env.digest(), "actions": []}

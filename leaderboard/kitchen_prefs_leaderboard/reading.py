@@ -6,7 +6,7 @@ wrong is said in one sentence.
 
 import os
 import stat
-import zlib
+from bz2 import BZ2Decompressor
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TypeVar
@@ -27,7 +27,6 @@ MOST_COMPRESSED = 1024 * 1024  # bytes of one split; ours have some 100,000
 # Bytes of one split before compression. The largest split, 210 episodes of 160 decisions, each
 # written in 80 characters, has 2.7 million.
 MOST_LINES = 4 * 1024 * 1024
-GZIP = 31  # what zlib calls a gzip stream of any window
 
 Model = TypeVar("Model", bound=BaseModel)
 
@@ -94,15 +93,15 @@ def _bytes_of(file: Path, most: int) -> bytes:
 
 
 def _decompress(content: bytes, file: Path) -> bytes:
-    stream = zlib.decompressobj(GZIP)
+    stream = BZ2Decompressor()
     try:
-        text = stream.decompress(content, MOST_LINES)
-    except zlib.error as error:
-        raise ValueError(f"{file} is not a gzip file, or a damaged one.") from error
-    if stream.unconsumed_tail:
+        text = stream.decompress(content, MOST_LINES + 1)
+    except OSError as error:
+        raise ValueError(f"{file} is not a bzip2 file, or a damaged one.") from error
+    if len(text) > MOST_LINES:
         raise ValueError(f"{file} holds more than {MOST_LINES:,} bytes.")
     if not stream.eof or stream.unused_data:
-        raise ValueError(f"{file} is not one whole gzip stream.")
+        raise ValueError(f"{file} is not one whole bzip2 file.")
     return text
 
 

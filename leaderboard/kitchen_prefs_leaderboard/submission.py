@@ -2,8 +2,8 @@
 
 FOLDER/
     submission.json            who, what, with which versions: a `Submission`
-    seen.jsonl.gz              one `Line` an episode, in the order of the sessions
-    unseen_preferences.jsonl.gz
+    seen.jsonl.bz2             one `Line` an episode, in the order of the sessions
+    unseen_preferences.jsonl.bz2
     ...                        one such file for each test split
 """
 
@@ -17,7 +17,7 @@ from kitchen_prefs.splits import TEST_SPLITS
 
 FORMAT = 1  # the version of what is described here
 DESCRIPTION = "submission.json"
-ACTIONS = {split: f"{split}.jsonl.gz" for split in TEST_SPLITS}
+ACTIONS = {split: f"{split}.jsonl.bz2" for split in TEST_SPLITS}
 # What decides how an episode goes, by the names that a reader knows.
 PACKAGES = {
     "kitchen_prefs": "lerobot_policy_kitchen_prefs",

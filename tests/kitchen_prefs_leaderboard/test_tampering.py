@@ -1,6 +1,6 @@
 """What a scorer refuses: whatever was changed, and what it says of it."""
 
-import gzip
+import bz2
 import json
 import os
 
@@ -10,15 +10,15 @@ from kitchen_prefs_leaderboard.reading import MOST_LINES
 from kitchen_prefs_leaderboard.replay import replay_split
 from kitchen_prefs_leaderboard.scoring import read_known, score_submissions
 
-SEEN = "seen.jsonl.gz"
+SEEN = "seen.jsonl.bz2"
 
 
 def lines_of(folder):
-    return gzip.decompress((folder / SEEN).read_bytes()).splitlines()
+    return bz2.decompress((folder / SEEN).read_bytes()).splitlines()
 
 
 def write(folder, lines):
-    (folder / SEEN).write_bytes(gzip.compress(b"\n".join(lines) + b"\n"))
+    (folder / SEEN).write_bytes(bz2.compress(b"\n".join(lines) + b"\n"))
 
 
 def edited(line, **changes):
@@ -103,15 +103,15 @@ def test_an_end_that_is_left_out(submission):
 
 def test_a_forbidden_decision_that_is_hidden(submission):
     """A failed grasp changes nothing in the kitchen, yet who leaves it out is found out."""
-    file = submission / "noisy.jsonl.gz"
-    lines = gzip.decompress(file.read_bytes()).splitlines()
+    file = submission / "noisy.jsonl.bz2"
+    lines = bz2.decompress(file.read_bytes()).splitlines()
     episodes = replay_split(submission, "noisy")
     number, failed = next(
         (e.session, e.forbidden.index(True)) for e in episodes if any(e.forbidden)
     )
     actions = json.loads(lines[number])["actions"]
     lines[number] = edited(lines[number], actions=actions[:failed] + actions[failed + 1 :])
-    file.write_bytes(gzip.compress(b"\n".join(lines) + b"\n"))
+    file.write_bytes(bz2.compress(b"\n".join(lines) + b"\n"))
     with pytest.raises(ValueError, match=f"line {number + 1}: "):
         replay_split(submission, "noisy")
 
@@ -132,18 +132,18 @@ def test_numbers_that_are_none(submission, number):
 
 
 def test_a_bomb(submission):
-    (submission / SEEN).write_bytes(gzip.compress(b"[" * (MOST_LINES * 20)))
+    (submission / SEEN).write_bytes(bz2.compress(b"[" * (MOST_LINES * 20)))
     refused(submission, "holds more than")
 
 
 def test_deep_nesting(submission):
-    (submission / SEEN).write_bytes(gzip.compress(b"[" * 100_000))
+    (submission / SEEN).write_bytes(bz2.compress(b"[" * 100_000))
     refused(submission, "line 1 is not what the format says")
 
 
-def test_no_gzip(submission):
+def test_no_bzip2(submission):
     (submission / SEEN).write_bytes(b"\x00" * 1000)
-    refused(submission, "is not a gzip file")
+    refused(submission, "is not a bzip2 file")
 
 
 def test_a_large_file(submission):
