@@ -1,4 +1,4 @@
-"""Data sets by name: make, load, verify.
+"""Data sets by name: make, load, verify, push.
 
 names         the grammar of the names, and where a data set lies
 columns       what a frame holds, and the content fingerprint
@@ -7,6 +7,7 @@ manifest      what a data set says about itself
 making        make on demand, and load
 verification  everything a data set must satisfy
 cards         a card for each data set
+pushing       to the Hugging Face hub
 recording     fingerprints and cards of the published data sets
 commands      `kitchen-prefs datasets`
 """

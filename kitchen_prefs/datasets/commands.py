@@ -1,4 +1,4 @@
-"""`kitchen-prefs datasets`: list, show, make, verify; and record, for developers."""
+"""`kitchen-prefs datasets`: list, show, make, verify, push; and record, for developers."""
 
 from pathlib import Path
 from typing import Annotated
@@ -73,6 +73,25 @@ def verify(names: Names) -> None:
         typer.echo(name)
         for claim in verify_dataset(name):
             typer.echo(f"  {claim}")
+
+
+@app.command()
+def push(
+    name: Name,
+    repo_id: Annotated[str, typer.Option(help="Its name on the Hugging Face hub, OWNER/NAME.")],
+    private: Annotated[
+        bool, typer.Option("--private", help="Make a new repository a private one.")
+    ] = False,
+) -> None:
+    """Check a data set as `verify` does, and put it on the Hugging Face hub with its card.
+
+    The hub knows you by `hf auth login`, or by a token in HF_TOKEN.
+
+    Example: kitchen-prefs datasets push dishwasher-val-v1 --repo-id=OWNER/dishwasher-val-v1
+    """
+    from kitchen_prefs.datasets.pushing import push_dataset
+
+    typer.echo(f"{content_of(name).name} is at {push_dataset(name, repo_id, private)}")
 
 
 @app.command()

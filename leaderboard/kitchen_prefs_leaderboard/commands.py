@@ -1,4 +1,4 @@
-"""`kitchen-prefs leaderboard`: submit, score, verify, show.
+"""`kitchen-prefs leaderboard`: submit, score, verify, show, push.
 
 LeRobot and torch take seconds to import, so the commands import what needs them when they run.
 """
@@ -17,7 +17,7 @@ from kitchen_prefs.files import make_folder
 
 app = typer.Typer(
     name="leaderboard",
-    help="Submissions that carry no score: make one, score it, verify it, show it.",
+    help="Submissions that carry no score: make one, score it, verify it, show it, push it.",
     no_args_is_help=True,
 )
 console = Console()
@@ -189,3 +189,44 @@ def page(
     verified = read_verifications(verifications)
     write_page(rank(score_submissions(folders, jobs), verified), verified, out)
     console.print(f"The page is {out}; a browser opens it without a server.")
+
+
+@app.command()
+def push(
+    folder: Annotated[Path, typer.Argument(metavar="DIR", help="A submission.")],
+    repo_id: Annotated[
+        str, typer.Option(help="The leaderboard's data set repository, OWNER/NAME.")
+    ],
+    name: Annotated[
+        str | None, typer.Option(help="Its folder there.", show_default="DIR's name")
+    ] = None,
+) -> None:
+    """Propose a submission to a leaderboard on the Hugging Face hub, as a pull request.
+
+    It is read as `score` reads it, but not replayed: whoever takes it scores it in any case.
+    The hub knows you by `hf auth login`, or by a token in HF_TOKEN.
+
+    For example:
+    kitchen-prefs leaderboard push outputs/my_ttp --repo-id=OWNER/NAME
+    """
+    from kitchen_prefs_leaderboard.pushing import push_submission
+
+    address = push_submission(folder, repo_id, name or folder.resolve().name)
+    typer.echo(f"The pull request is {address}.")
+
+
+@app.command()
+def push_page(
+    file: Annotated[Path, typer.Argument(metavar="FILE", help="What `page` wrote.")],
+    repo_id: Annotated[str, typer.Option(help="The Space, OWNER/SPACE.")],
+) -> None:
+    """Show the page as a static Space of the Hugging Face hub.
+
+    The hub knows you by `hf auth login`, or by a token in HF_TOKEN.
+
+    For example:
+    kitchen-prefs leaderboard push-page outputs/leaderboard.html --repo-id=OWNER/SPACE
+    """
+    from kitchen_prefs_leaderboard import pushing
+
+    typer.echo(f"The page is shown at {pushing.push_page(file, repo_id)}.")

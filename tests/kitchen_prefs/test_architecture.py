@@ -16,6 +16,7 @@ PACKAGES = {
 # benchmark, each after all those that it may import.
 ORDER = (
     "files",
+    "hub",
     "preferences",
     "instances",
     "actions",

@@ -93,7 +93,7 @@ def test_record_keeps_fingerprints_and_cards(tmp_path, monkeypatch):
     assert "| episodes | 1 |" in card
 
 
-@pytest.mark.parametrize("command", ["list", "show", "make", "verify", "record"])
+@pytest.mark.parametrize("command", ["list", "show", "make", "verify", "push", "record"])
 def test_each_command_has_an_example(command):
     help_text = run("datasets", command, "--help").output
     assert f"Example: kitchen-prefs datasets {command}" in help_text
