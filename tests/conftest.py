@@ -1,4 +1,4 @@
-"""A hub for all, and how the test processes share the cores: the longest files first."""
+"""A hub for all tests, and how the processes share the cores: the longest files first."""
 
 import os
 from collections import Counter
