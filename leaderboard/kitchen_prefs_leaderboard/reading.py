@@ -4,12 +4,12 @@ Nothing is followed (no links), nothing is read beyond its bound, nothing is exe
 wrong is said in one sentence.
 """
 
+import errno
 import os
 import stat
 from bz2 import BZ2Decompressor
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TypeVar
 
 from pydantic import BaseModel, ValidationError
 
@@ -27,8 +27,9 @@ MOST_COMPRESSED = 1024 * 1024  # bytes of one split; ours have some 100,000
 # Bytes of one split before compression. The largest split, 210 episodes of 160 decisions, each
 # written in 80 characters, has 2.7 million.
 MOST_LINES = 4 * 1024 * 1024
-
-Model = TypeVar("Model", bound=BaseModel)
+# Bytes of one episode: 160 actions of 7 numbers, each of at most 25 characters, have 28,000. Every
+# mistake in it is noted, which takes up to 150 times its size.
+MOST_LINE = 64 * 1024
 
 
 def read_description(folder: Path) -> Submission:
@@ -50,7 +51,7 @@ def read_lines(folder: Path, split: str) -> list[Line]:
     file = folder / ACTIONS[split]
     text = _decompress(_bytes_of(file, MOST_COMPRESSED), file)
     lines = [
-        _parse(Line, line, f"{file}, line {number}")
+        _line(line, f"{file}, line {number}")
         for number, line in enumerate(text.splitlines(), start=1)
     ]
     for index, line in enumerate(lines):
@@ -79,17 +80,22 @@ def files_of(folder: Path) -> Iterator[tuple[str, bytes]]:
 def _bytes_of(file: Path, most: int) -> bytes:
     """A regular file's content, of at most so many bytes."""
     try:
-        # A link is not followed; a pipe is not waited for.
-        descriptor = os.open(file, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK)
+        with open(file, "rb", opener=_open) as opened:
+            if not stat.S_ISREG(os.fstat(opened.fileno()).st_mode):
+                raise ValueError(f"{file} is not a regular file.")
+            content = opened.read(most + 1)
     except OSError as error:
+        if error.errno == errno.ELOOP:
+            raise ValueError(f"{file} is a link; a submission holds files.") from error
         raise ValueError(f"{file} cannot be read: {error.strerror}.") from error
-    with open(descriptor, "rb") as opened:
-        if not stat.S_ISREG(os.fstat(descriptor).st_mode):
-            raise ValueError(f"{file} is not a regular file.")
-        content = opened.read(most + 1)
     if len(content) > most:
         raise ValueError(f"{file} is larger than {most:,} bytes.")
     return content
+
+
+def _open(file: str, flags: int) -> int:
+    """A link is not followed; a pipe is not waited for."""
+    return os.open(file, flags | os.O_NOFOLLOW | os.O_NONBLOCK)
 
 
 def _decompress(content: bytes, file: Path) -> bytes:
@@ -103,6 +109,12 @@ def _decompress(content: bytes, file: Path) -> bytes:
     if not stream.eof or stream.unused_data:
         raise ValueError(f"{file} is not one whole bzip2 file.")
     return text
+
+
+def _line(content: bytes, where: str) -> Line:
+    if len(content) > MOST_LINE:
+        raise ValueError(f"{where} is longer than {MOST_LINE:,} bytes.")
+    return _parse(Line, content, where)
 
 
 def _parse[Model: BaseModel](model: type[Model], content: bytes, where: str) -> Model:

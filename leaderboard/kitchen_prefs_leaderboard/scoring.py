@@ -3,6 +3,7 @@
 import hashlib
 from collections.abc import Iterable, Sequence
 from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import product
@@ -21,7 +22,7 @@ from kitchen_prefs.metrics import (
     summarise,
 )
 from kitchen_prefs.splits import DATA_VERSION, TEST_SPLITS
-from kitchen_prefs_leaderboard.reading import files_of, read_description
+from kitchen_prefs_leaderboard.reading import files_of, read_description, read_lines
 from kitchen_prefs_leaderboard.replay import replay_split
 from kitchen_prefs_leaderboard.submission import Submission
 
@@ -88,13 +89,13 @@ def score_submissions(folders: Sequence[Path], jobs: int) -> list[Entry]:
 
     Raises:
         ValueError: If one is not what the format says, or does not lead where it says.
+        OSError: If a process is killed.
     """
     submissions = [read_known(folder) for folder in folders]
     work = list(product(folders, TEST_SPLITS))
-    with ProcessPoolExecutor(jobs) as pool:
-        replays = pool.map(replay_split, *zip(*work, strict=True))
-        bar = tqdm(replays, "Replaying", len(work), unit="split", leave=False)
-        episodes = dict(zip(work, bar, strict=True))
+    for folder, split in work:
+        read_lines(folder, split)  # takes no time, and nothing is replayed if one is malformed
+    episodes = _replay(work, jobs)
     return [
         Entry(submission, digest_of(folder), {s: episodes[folder, s] for s in TEST_SPLITS})
         for folder, submission in zip(folders, submissions, strict=True)
@@ -137,6 +138,19 @@ def difference(entry: Entry, other: Entry) -> Interval:
     return mean_of_splits(
         list(entry.episodes.values()), lambda e: score(e) - theirs[e.split, e.session]
     )
+
+
+def _replay(work: Sequence[tuple[Path, str]], jobs: int) -> dict[tuple[Path, str], list[Episode]]:
+    """Replay splits of submissions; the first that does not lead where it says ends the work."""
+    try:
+        with ProcessPoolExecutor(jobs) as pool:
+            replays = pool.map(replay_split, *zip(*work, strict=True))
+            bar = tqdm(replays, "Replaying", len(work), unit="split", leave=False, disable=None)
+            return dict(zip(work, bar, strict=True))
+    except BrokenProcessPool as error:
+        raise OSError(
+            "A process that replays was killed; give fewer --jobs if memory is short."
+        ) from error
 
 
 def _count(each: Iterable[dict[str, int]]) -> dict[str, int]:

@@ -25,9 +25,11 @@ PACKAGES = {
 }
 TRACKS = ("standard", "privileged", "language", "open")
 
-# No control characters: a name stands in a terminal, too.
-Text = Annotated[str, StringConstraints(min_length=1, max_length=200, pattern=r"^[^\p{C}]+$")]
-Name = Annotated[str, StringConstraints(min_length=1, max_length=60, pattern=r"^[^\p{C}]+$")]
+# Words with a space between, without control characters and line breaks of any kind: a name stands
+# in a terminal, too.
+WORDS = r"^[^\p{C}\p{Z}]+( [^\p{C}\p{Z}]+)*$"
+Text = Annotated[str, StringConstraints(max_length=200, pattern=WORDS)]
+Name = Annotated[str, StringConstraints(max_length=60, pattern=WORDS)]
 Link = Annotated[str, StringConstraints(max_length=300, pattern=r"^https?://[^\s\p{C}\"'<>]+$")]
 Hash = Annotated[str, StringConstraints(pattern=r"^[0-9a-f]{64}$")]  # SHA-256, hexadecimal
 # A pose in the kitchen, which is some metres wide: position (m) and quaternion (wxyz).
@@ -103,10 +105,12 @@ class Line(Strict):
 
 
 def complaint(error: ValidationError) -> str:
-    """The first thing that is wrong, in a few words."""
+    """The first thing that is wrong, in a few words that a terminal can show."""
     first = error.errors(include_url=False, include_input=False)[0]
     at = ".".join(str(step)[:40] for step in first["loc"][:6])
-    return f"{f'{at}: ' if at else ''}{first['msg'][:200]}."
+    words = f"{f'{at}: ' if at else ''}{first['msg'][:200]}."
+    # A field that is too many has whatever name a stranger gave it.
+    return "".join(character if character.isprintable() else "?" for character in words)
 
 
 def installed_packages() -> dict[str, str]:
