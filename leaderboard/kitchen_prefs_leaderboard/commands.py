@@ -95,7 +95,7 @@ def submit(
     )
     played = player.play(out.with_name(f"{out.name}-episodes"), salt=0, jobs=jobs)
     submitting.write_submission(submission, played, out)
-    console.print(f"The submission is {out}. `kitchen-prefs leaderboard score {out}` scores it.")
+    typer.echo(f"The submission is {out}. `kitchen-prefs leaderboard score {out}` scores it.")
 
 
 @app.command()
@@ -154,9 +154,9 @@ def verify(
     elif path or policy_type or context.args:
         raise ValueError("A policy plays again with --rerun only; add it.")
     (entry,) = score_submissions([folder], jobs)
-    console.print(f"All actions of {folder} lead where it says.", markup=False)
+    typer.echo(f"All actions of {folder} lead where it says.")
     if not rerun:
-        console.print("Who chose them only a re-run tells: --rerun --policy.path=CHECKPOINT.")
+        typer.echo("Who chose them only a re-run tells: --rerun --policy.path=CHECKPOINT.")
         return
     from kitchen_prefs_leaderboard import output, verification
     from kitchen_prefs_leaderboard.playing import load_player
@@ -165,7 +165,8 @@ def verify(
     salt = salt or secrets.randbelow(FRESH_SALTS) + 1
     found = verification.run_again(entry, player, salt, out / entry.digest[:12], jobs)
     file = verification.write_verification(found, verifications)
-    console.print(output.to_comparison(found), f"The record is {file}.", sep="\n")
+    console.print(output.to_comparison(found))
+    typer.echo(f"{output.to_verdict(found)}\nThe record is {file}.")
 
 
 @app.command()
@@ -188,7 +189,7 @@ def page(
 
     verified = read_verifications(verifications)
     write_page(rank(score_submissions(folders, jobs), verified), verified, out)
-    console.print(f"The page is {out}; a browser opens it without a server.")
+    typer.echo(f"The page is {out}; a browser opens it without a server.")
 
 
 @app.command()

@@ -36,13 +36,17 @@ def to_tables(entry: Entry, by: str | None) -> Iterator[Table]:
 
 def to_comparison(found: Verification) -> Table:
     """A re-run beside the replay, for the terminal."""
-    verdict = "confirmed" if found.confirmed else "NOT confirmed"
-    title = f"{verdict}; {found.same:.0%} of the episodes were decided alike"
-    table = _table(title, "Score", "Mean", "95 % interval")
+    table = _table("All test splits", "Score", "Mean", "95 % interval")
     rows = {"replayed": found.replayed, "run again": found.rerun, "fresh sessions": found.fresh}
     for name, means in rows.items():
         table.add_row(name, f"{means.mean:.3f}", f"{means.low:.3f} to {means.high:.3f}")
     return table
+
+
+def to_verdict(found: Verification) -> str:
+    """What a re-run says of a submission, in a sentence."""
+    verdict = "confirms" if found.confirmed else "does NOT confirm"
+    return f"The re-run {verdict} the submission; {found.same:.0%} of the episodes went alike."
 
 
 def to_json(entries: Sequence[Entry], by: str | None) -> str:
