@@ -10,7 +10,8 @@ from kitchen_prefs.evaluation import settings_of
 from kitchen_prefs.metrics import Episode
 from kitchen_prefs.records import read_episodes
 from kitchen_prefs.reproduction.processes import run_module
-from kitchen_prefs.splits import TEST_SPLITS, get_split
+from kitchen_prefs.splits import TEST_SPLITS, get_split, suggest
+from kitchen_prefs_leaderboard.submission import TRACKS
 
 
 @dataclass(frozen=True)
@@ -78,8 +79,10 @@ def load_player(
         track: What the policy is told; on the open track it is told what it asks for.
 
     Raises:
-        ValueError: If it cannot be loaded, see `load_actor`.
+        ValueError: If there is no such track, or if it cannot be loaded, see `load_actor`.
     """
+    if track not in TRACKS:
+        raise ValueError(f"There is no track {track!r}. {suggest(track, TRACKS)}")
     told = None if track == "open" else track
     actor = load_actor(path, policy_type, settings_of(settings), track=told)
     policy = f"--policy.path={path}" if path else f"--policy.type={policy_type}"

@@ -90,11 +90,13 @@ def run_again(entry: Entry, player: "Player", salt: int, folder: Path, jobs: int
         entry: The submission, replayed.
         player: The policy that is said to have chosen its actions.
         salt: Draws the fresh sessions.
-        folder: Keeps the episodes; what is played already is not played again.
-        jobs: How many splits are played at once.
+        folder: Keeps the episodes of each policy; what is played already is not played again.
+        jobs: How many processes share the splits.
     """
-    rerun, fresh = (player.play(folder / f"salt-{drawing}", drawing, jobs) for drawing in (0, salt))
-    return judge(entry, player.actor.fingerprint, rerun, fresh, salt)
+    checkpoint = player.actor.fingerprint
+    kept = folder / checkpoint[:12]
+    rerun, fresh = (player.play(kept / f"salt-{drawing}", drawing, jobs) for drawing in (0, salt))
+    return judge(entry, checkpoint, rerun, fresh, salt)
 
 
 def judge(
