@@ -1,14 +1,20 @@
-"""A submission whose every action is the expert's."""
+"""Submissions and entries whose every action is the expert's, whole ones and small ones."""
 
 import bz2
+import runpy
+import sys
+from dataclasses import replace
+from pathlib import Path
 
 import pytest
 
 from kitchen_prefs import instances
+from kitchen_prefs.cli import main
 from kitchen_prefs.play import Play
 from kitchen_prefs.sessions import expert_run, make_session
-from kitchen_prefs.splits import TEST_SPLITS, get_split
+from kitchen_prefs.splits import SPLITS, TEST_SPLITS, get_split
 from kitchen_prefs_leaderboard.replay import to_jsonl, write_line
+from kitchen_prefs_leaderboard.scoring import Entry
 from kitchen_prefs_leaderboard.submission import ACTIONS, DESCRIPTION, Actor
 from kitchen_prefs_leaderboard.submitting import describe
 
@@ -30,7 +36,7 @@ def description(**about):
         "name": "The expert",
         "authors": ["A. Person"],
         "track": "privileged",
-        "policy": Actor(type="expert"),
+        "policy": Actor(type="expert", checkpoint="e" * 64),
         "hardware": "none",
         "training": "none",
     }
@@ -57,3 +63,54 @@ def submission(expert_files, tmp_path):
     for name, content in expert_files.items():
         (folder / name).write_bytes(content)
     return folder
+
+
+@pytest.fixture(scope="module")
+def few_sessions():
+    """Cuts the test splits down to six sessions; the folder does the same to other programs."""
+    folder = Path(__file__).with_name("few_sessions")
+    whole = dict(SPLITS)
+    runpy.run_path(str(folder / "sitecustomize.py"))
+    yield folder
+    SPLITS.update(whole)
+
+
+@pytest.fixture(scope="module")
+def few_episodes(few_sessions):
+    """Gives the expert's episodes, of which some on the split `seen` pack nothing."""
+    perfect = {
+        split: [played_by_the_expert(split, i) for i in range(get_split(split).sessions)]
+        for split in TEST_SPLITS
+    }
+
+    def give(worse=(), salt=0):
+        seen = [replace(e, placed=(0, 0)) if e.session in worse else e for e in perfect["seen"]]
+        return {
+            split: [replace(episode, salt=salt) for episode in episodes]
+            for split, episodes in (perfect | {"seen": seen}).items()
+        }
+
+    return give
+
+
+@pytest.fixture(scope="module")
+def make_entry(few_episodes):
+    """Makes an entry of those episodes; its digest is one letter, repeated."""
+
+    def make(letter, worse=(), **about):
+        return Entry(description(name=letter, **about), letter * 64, few_episodes(worse))
+
+    return make
+
+
+@pytest.fixture
+def kitchen_prefs(monkeypatch):
+    """Runs a command in this process; gives its exit code, or what it says went wrong."""
+
+    def run(*arguments):
+        monkeypatch.setattr(sys, "argv", ["kitchen-prefs", *map(str, arguments)])
+        with pytest.raises(SystemExit) as stopped:
+            main()
+        return stopped.value.code
+
+    return run

@@ -1,0 +1,190 @@
+"""Replays, and what is printed of them: the same bytes each time, the numbers of the episodes."""
+
+import csv
+import io
+import json
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from rich.console import Console
+
+from kitchen_prefs import instances
+from kitchen_prefs.metrics import METRICS, mean_of_splits, summarise
+from kitchen_prefs.play import Play
+from kitchen_prefs.sessions import make_session
+from kitchen_prefs.splits import TEST_SPLITS, get_split
+from kitchen_prefs_leaderboard.output import to_csv, to_json, to_tables
+from kitchen_prefs_leaderboard.replay import replay, write_line
+from kitchen_prefs_leaderboard.scoring import score_submissions
+from kitchen_prefs_leaderboard.submission import Line
+from kitchen_prefs_leaderboard.submitting import write_submission
+
+BY_HAND = Path(__file__).parents[2] / "leaderboard" / "examples" / "by_hand.py"
+MOST = 1_000_000  # bytes of a submission
+
+
+def played_at_random(split, index, seed, jitter=0.0):
+    """An episode of whatever may be chosen, given with an error of some metres and quaternions."""
+    play = Play(make_session(split, index))
+    generator = np.random.default_rng(seed)
+    while not (play.terminated or play.truncated):
+        rows = play.seen.rows[instances.choosable(play.seen.rows)]
+        pose = generator.choice(rows)[instances.POSE]
+        play.act(pose + generator.normal(0, jitter, pose.shape))
+    return play.episode()
+
+
+@pytest.fixture(scope="module")
+def played(few_sessions):
+    """Episodes that were played at random."""
+    return {
+        split: [played_at_random(split, i, seed=i) for i in range(get_split(split).sessions)]
+        for split in TEST_SPLITS
+    }
+
+
+@pytest.fixture(scope="module")
+def folder(played, make_entry, tmp_path_factory):
+    """The submission of these episodes."""
+    folder = tmp_path_factory.mktemp("random") / "submission"
+    write_submission(make_entry("a").submission, played, folder)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def entry(folder):
+    """That submission, scored."""
+    return score_submissions([folder], 1)[0]
+
+
+def printed(entry, by):
+    """All that is printed of an entry."""
+    console = Console(width=200, record=True, file=io.StringIO())
+    console.print(*to_tables(entry, by))
+    return [to_json([entry], by), to_csv([entry], by), console.export_text()]
+
+
+@pytest.mark.slow
+def test_a_submission_of_plain_python_is_scored(tmp_path):
+    folder = tmp_path / "by_hand"
+    subprocess.run([sys.executable, BY_HAND, folder], check=True)
+    assert sum(file.stat().st_size for file in folder.iterdir()) < MOST
+    score = ["leaderboard", "score", folder, "--format=json"]
+    scored = subprocess.run(
+        [sys.executable, "-m", "kitchen_prefs.cli", *score],
+        check=True,
+        capture_output=True,
+        text=True,
+    )
+    (content,) = json.loads(scored.stdout)
+    assert content["name"] == "By hand"
+    assert list(content["splits"]) == [*TEST_SPLITS, "mean"]
+    for metrics in content["splits"].values():
+        assert list(metrics) == list(METRICS)
+        assert all(one["low"] <= one["mean"] <= one["high"] for one in metrics.values())
+        assert 0 < metrics["Score"]["mean"] < 0.5
+        assert metrics["Success"]["mean"] == 0
+
+
+@pytest.mark.parametrize("by", [None, "preference", "count"])
+def test_two_scorings_print_the_same_bytes(folder, entry, by):
+    assert printed(score_submissions([folder], 2)[0], by) == printed(entry, by)
+
+
+def test_a_replay_has_the_metrics_of_the_episodes_that_were_played(played, entry):
+    for split, episodes in played.items():
+        assert entry.metrics[split] == {n: summarise(episodes, m) for n, m in METRICS.items()}
+    assert entry.metrics["mean"] == {
+        name: mean_of_splits(list(played.values()), metric) for name, metric in METRICS.items()
+    }
+
+
+def test_every_metric_of_every_split_is_printed_in_every_form(entry):
+    as_json, as_csv, _ = printed(entry, None)
+    splits = json.loads(as_json)[0]["splits"]
+    rows = csv.DictReader(io.StringIO(as_csv))
+    numbers = {
+        (row["split"], row["metric"]): {end: float(row[end]) for end in ("mean", "low", "high")}
+        for row in rows
+    }
+    assert numbers == {(split, name): splits[split][name] for split in splits for name in METRICS}
+    assert numbers == {
+        (split, name): {end: round(value, 4) for end, value in vars(interval).items()}
+        for split, metrics in entry.metrics.items()
+        for name, interval in metrics.items()
+    }
+    for metrics in entry.metrics.values():
+        for interval in metrics.values():
+            assert f"{interval.mean:.3f}" in printed(entry, None)[2]
+
+
+@pytest.mark.parametrize("by", ["preference", "count"])
+def test_the_groups_means_weighted_back_are_the_splits(entry, by):
+    groups = entry.grouped(by)
+    assert {split: len(of) for split, of in groups.items()} == {
+        split: len({getattr(e, by) for e in episodes}) for split, episodes in entry.episodes.items()
+    }
+    for split, of_split in groups.items():
+        labels = [str(getattr(episode, by)) for episode in entry.episodes[split]]
+        for name in METRICS:
+            mean = sum(of_split[label][name].mean for label in labels) / len(labels)
+            assert mean == pytest.approx(entry.metrics[split][name].mean)
+
+
+def test_a_strangers_name_is_printed_as_it_is(entry):
+    name = "[/red] [bold]me[/] :skull:"
+    theirs = replace(entry, submission=entry.submission.model_copy(update={"name": name}))
+    for text in printed(theirs, "count"):
+        assert name in text
+
+
+@settings(deadline=None, max_examples=30)
+@given(
+    st.sampled_from(TEST_SPLITS),
+    st.integers(0, 5),
+    st.integers(0, 1000),
+    st.sampled_from([0, 0.001, 0.1, 10]),
+)
+def test_what_is_written_of_an_episode_is_that_episode(split, index, seed, jitter):
+    episode = played_at_random(split, index, seed, jitter)
+    line = Line.model_validate_json(write_line(episode).model_dump_json())
+    again = replay(split, line, "here")
+    assert replace(again, actions=episode.actions) == episode
+    np.testing.assert_allclose(again.actions, episode.actions, atol=5.1e-5, rtol=0)
+    values = {name: metric(again) for name, metric in METRICS.items()}
+    assert 0 <= values["Success"] <= values["PE"] <= 1
+    assert 0 <= values["TE"] <= values["PE"]
+    assert 0 <= values["Score"] <= 1
+    assert values["ED"] <= values["ED_c"] <= 1
+
+
+def test_an_action_whose_rounding_would_choose_another_instance_is_kept(few_episodes):
+    session = make_session("seen", 0)
+    start, actions = Play(session), few_episodes()["seen"][0].actions
+
+    def between(share):
+        """A pose from the expert's first action, at 0, to its second, at 1."""
+        return tuple(a + share * (b - a) for a, b in zip(*actions[:2], strict=True))
+
+    first, second = 0.0, 1.0  # close in on the place where the choice changes
+    while second - first > 1e-9:
+        middle = (first + second) / 2
+        if start.choose(between(middle))[0] == start.choose(actions[0])[0]:
+            first = middle
+        else:
+            second = middle
+    kept = []
+    for share in (first, second):
+        play = Play(session)
+        while not (play.terminated or play.truncated):
+            play.act(between(share))
+        line = write_line(play.episode())
+        assert replay("seen", line, "here").decisions == play.episode().decisions
+        kept.append(line.actions[0] == between(share))
+    assert sorted(kept) == [False, True]  # both are rounded to one pose, which chooses as one does

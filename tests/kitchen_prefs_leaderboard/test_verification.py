@@ -1,0 +1,104 @@
+"""What a re-run must show to confirm a submission, and the records of re-runs."""
+
+import pytest
+
+from kitchen_prefs_leaderboard.ranking import rank
+from kitchen_prefs_leaderboard.scoring import score_submissions
+from kitchen_prefs_leaderboard.submission import Actor
+from kitchen_prefs_leaderboard.submitting import write_submission
+from kitchen_prefs_leaderboard.verification import judge, read_verifications, write_verification
+
+CHECKPOINT = "e" * 64  # of the entries in conftest.py
+SALT = 7
+ALL = range(6)  # all sessions of a split that was cut short
+
+
+@pytest.fixture
+def found(few_episodes):
+    """What a re-run of an entry comes to, in which some sessions go badly."""
+
+    def judged(entry, checkpoint=CHECKPOINT, rerun=(), fresh=()):
+        again, anew = few_episodes(rerun), few_episodes(fresh, SALT)
+        return judge(entry, checkpoint, again, anew, SALT)
+
+    return judged
+
+
+def test_the_same_policy_confirms(make_entry, found):
+    entry = make_entry("a")
+    verification = found(entry)
+    assert verification.confirmed
+    assert verification.digest == entry.digest
+    assert verification.salt == SALT
+    assert verification.same == 1
+    assert verification.replayed == verification.rerun == verification.fresh
+
+
+def test_a_few_sessions_that_went_otherwise_do_not_matter(make_entry, found):
+    assert found(make_entry("a"), rerun=[0], fresh=[0]).confirmed
+    assert found(make_entry("a", worse=[0]), fresh=[1]).confirmed
+
+
+def test_another_checkpoint_confirms_nothing(make_entry, found):
+    assert not found(make_entry("a"), checkpoint="f" * 64).confirmed
+
+
+def test_a_submission_without_a_checkpoint_cannot_be_confirmed(make_entry, found):
+    assert not found(make_entry("a", policy=Actor(type="by_hand"))).confirmed
+
+
+def test_actions_better_than_the_policy_are_not_confirmed(make_entry, found):
+    verification = found(make_entry("a"), rerun=ALL, fresh=())
+    assert not verification.confirmed
+    assert verification.rerun.mean < verification.replayed.mean
+
+
+def test_actions_worse_than_the_policy_are_not_confirmed(make_entry, found):
+    assert not found(make_entry("a", worse=ALL)).confirmed
+
+
+def test_a_policy_that_knows_the_published_sessions_alone_is_not_confirmed(make_entry, found):
+    verification = found(make_entry("a"), fresh=ALL)
+    assert not verification.confirmed
+    assert verification.fresh.mean < verification.rerun.mean == verification.replayed.mean
+
+
+def test_records_are_read_as_they_were_written(make_entry, found, tmp_path):
+    verification = found(make_entry("a"), rerun=[0])
+    file = write_verification(verification, tmp_path / "records")
+    assert file.name == f"{verification.digest}.json"
+    assert read_verifications(tmp_path / "records") == {verification.digest: verification}
+
+
+def test_a_later_rerun_that_does_not_confirm_takes_the_rank_away(make_entry, found, tmp_path):
+    entry = make_entry("a")
+    write_verification(found(entry), tmp_path)
+    assert rank([entry], read_verifications(tmp_path))["privileged"][0].rank == 1
+    write_verification(found(entry, fresh=ALL), tmp_path)
+    assert rank([entry], read_verifications(tmp_path))["privileged"][0].rank is None
+
+
+@pytest.mark.parametrize("content", ["", "[]", "{}", '{"confirmed": true}'])
+def test_what_is_no_record_is_said_in_one_sentence(content, tmp_path):
+    (tmp_path / "x.json").write_text(content)
+    with pytest.raises(ValueError, match=r"x.json is no record of a re-run; delete it .*anew\.$"):
+        read_verifications(tmp_path)
+
+
+def test_a_changed_byte_of_a_submission_takes_its_rank_away(
+    make_entry, few_episodes, found, tmp_path
+):
+    folder, records = tmp_path / "submission", tmp_path / "records"
+    write_submission(make_entry("a").submission, few_episodes(), folder)
+
+    def rank_now():
+        entries = score_submissions([folder], 1)
+        return rank(entries, read_verifications(records))["privileged"][0].rank
+
+    write_verification(found(score_submissions([folder], 1)[0]), records)
+    assert rank_now() == 1
+    file = folder / "noisy.jsonl.gz"
+    content = bytearray(file.read_bytes())
+    content[4] ^= 1  # the time in the header, which changes no action
+    file.write_bytes(content)
+    assert rank_now() is None
