@@ -132,9 +132,11 @@ def test_the_groups_means_weighted_back_are_the_splits(entry, by):
     }
     for split, of_split in groups.items():
         labels = [str(getattr(episode, by)) for episode in entry.episodes[split]]
-        for name in METRICS:
+        for name, metric in METRICS.items():
             mean = sum(of_split[label][name].mean for label in labels) / len(labels)
             assert mean == pytest.approx(entry.metrics[split][name].mean)
+            first = [metric(e) for e in entry.episodes[split] if str(getattr(e, by)) == labels[0]]
+            assert of_split[labels[0]][name].mean == pytest.approx(np.mean(first))
 
 
 def test_a_strangers_name_is_printed_as_it_is(entry):
