@@ -51,7 +51,7 @@ def _ranked(entries: Sequence[Entry]) -> list[Row]:
     """
     groups: list[list[Entry]] = []
     for entry in entries:
-        if groups and difference(groups[-1][0], entry).low <= 0:
+        if groups and difference(groups[-1][0].episodes, entry.episodes).low <= 0:
             groups[-1].append(entry)
         else:
             groups.append([entry])

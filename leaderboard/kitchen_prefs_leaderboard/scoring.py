@@ -1,7 +1,7 @@
 """What a submission is worth: every metric, from replays alone."""
 
 import hashlib
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
@@ -129,15 +129,19 @@ def digest_of(folder: Path) -> str:
     return sha.hexdigest()
 
 
-def difference(entry: Entry, other: Entry) -> Interval:
-    """How much better an entry is by Score than another on the same sessions.
+def difference(
+    episodes: Mapping[str, Sequence[Episode]], others: Mapping[str, Sequence[Episode]]
+) -> Interval:
+    """How much better some episodes are by Score than others of the same sessions.
 
     The paired bootstrap: the sessions are resampled, and each brings the difference of both.
+
+    Args:
+        episodes: The episodes of each split.
+        others: Those that they are compared with.
     """
-    theirs = {(e.split, e.session): score(e) for of in other.episodes.values() for e in of}
-    return mean_of_splits(
-        list(entry.episodes.values()), lambda e: score(e) - theirs[e.split, e.session]
-    )
+    theirs = {(e.split, e.session): score(e) for of in others.values() for e in of}
+    return mean_of_splits(list(episodes.values()), lambda e: score(e) - theirs[e.split, e.session])
 
 
 def _replay(work: Sequence[tuple[Path, str]], jobs: int) -> dict[tuple[Path, str], list[Episode]]:

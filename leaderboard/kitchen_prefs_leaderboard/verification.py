@@ -15,8 +15,14 @@ from pydantic import Field, ValidationError
 from kitchen_prefs import metrics
 from kitchen_prefs.files import write_json
 from kitchen_prefs.metrics import Episode, Interval, mean_of_splits
-from kitchen_prefs_leaderboard.scoring import MEAN, Entry
-from kitchen_prefs_leaderboard.submission import Hash, Name, Strict, installed_packages
+from kitchen_prefs_leaderboard.scoring import MEAN, Entry, difference
+from kitchen_prefs_leaderboard.submission import (
+    Hash,
+    Name,
+    Strict,
+    Submission,
+    installed_packages,
+)
 
 if TYPE_CHECKING:
     from kitchen_prefs_leaderboard.playing import Player  # brings torch
@@ -35,7 +41,6 @@ class Verification(Strict):
 
     Attributes:
         digest: The hash of the submission's files.
-        checkpoint: The fingerprint of the policy that was run again.
         packages: The versions of the programs that ran it.
         salt: Which drawing of fresh sessions it played, too.
         same: The share of the submission's episodes in which it decided the same.
@@ -46,7 +51,6 @@ class Verification(Strict):
     """
 
     digest: Hash
-    checkpoint: Hash
     packages: Annotated[dict[Name, Name], Field(max_length=50)]
     salt: Annotated[int, Field(ge=1)]
     same: Annotated[float, Field(ge=0, le=1)]
@@ -83,6 +87,26 @@ def write_verification(verification: Verification, folder: Path) -> Path:
     return file
 
 
+def check_policy(submission: Submission, checkpoint: str) -> None:
+    """Make sure that a policy is the one that a submission names.
+
+    Args:
+        submission: Who is said to have acted.
+        checkpoint: The fingerprint of the policy that is to run again.
+
+    Raises:
+        ValueError: If it is another one, or if the submission names none.
+    """
+    named = submission.policy.checkpoint
+    if named is None:
+        raise ValueError("The submission names no checkpoint, so nothing can be run again.")
+    if named != checkpoint:
+        raise ValueError(
+            f"The submission is of a policy with the fingerprint {named[:12]}, and this one has "
+            f"{checkpoint[:12]}; give the submission's --policy.path or --policy.type."
+        )
+
+
 def run_again(entry: Entry, player: "Player", salt: int, folder: Path, jobs: int) -> Verification:
     """Let a policy play the published and fresh sessions, and hold both against a submission.
 
@@ -90,56 +114,50 @@ def run_again(entry: Entry, player: "Player", salt: int, folder: Path, jobs: int
         entry: The submission, replayed.
         player: The policy that is said to have chosen its actions.
         salt: Draws the fresh sessions.
-        folder: Keeps the episodes of each policy; what is played already is not played again.
+        folder: Keeps the episodes; what is played already is not played again.
         jobs: How many processes share the splits.
+
+    Raises:
+        ValueError: If it is another policy.
+        OSError: If an evaluation fails; the message names its log.
     """
-    checkpoint = player.actor.fingerprint
-    kept = folder / checkpoint[:12]
-    rerun, fresh = (player.play(kept / f"salt-{drawing}", drawing, jobs) for drawing in (0, salt))
-    return judge(entry, checkpoint, rerun, fresh, salt)
+    check_policy(entry.submission, player.actor.fingerprint)
+    rerun, fresh = (player.play(folder / f"salt-{drawing}", drawing, jobs) for drawing in (0, salt))
+    return judge(entry, rerun, fresh, salt)
 
 
 def judge(
     entry: Entry,
-    checkpoint: str,
     rerun: Mapping[str, Sequence[Episode]],
     fresh: Mapping[str, Sequence[Episode]],
     salt: int,
 ) -> Verification:
     """Hold a re-run against a submission.
 
-    It confirms the submission if it is the same policy, if on the same sessions the paired interval
-    of the difference in Score holds zero, and if the policy is not worse on fresh sessions: then
-    it has not merely learned the published ones.
+    It confirms the submission if on the same sessions the paired interval of the difference in
+    Score holds zero, and if the policy is not worse on fresh sessions: then it has not merely
+    learned the published ones.
 
     Args:
         entry: The submission, replayed.
-        checkpoint: The fingerprint of the policy that was run again.
-        rerun: Its episodes on the same sessions, by split.
-        fresh: Its episodes on fresh sessions, by split.
+        rerun: Its policy's episodes on the same sessions, by split.
+        fresh: Its policy's episodes on fresh sessions, by split.
         salt: Draws the fresh sessions.
     """
     mine = {(e.split, e.session): e for episodes in entry.episodes.values() for e in episodes}
     pairs = [(mine[e.split, e.session], e) for episodes in rerun.values() for e in episodes]
-    gain = mean_of_splits(
-        list(rerun.values()), lambda e: metrics.score(e) - metrics.score(mine[e.split, e.session])
-    )
+    gain = difference(rerun, entry.episodes)
     replayed = entry.metrics[MEAN]["Score"]
     anew = mean_of_splits(list(fresh.values()), metrics.score)
     return Verification(
         digest=entry.digest,
-        checkpoint=checkpoint,
         packages=installed_packages(),
         salt=salt,
         same=sum(one.decisions == other.decisions for one, other in pairs) / len(pairs),
         replayed=_means(replayed),
         rerun=_means(mean_of_splits(list(rerun.values()), metrics.score)),
         fresh=_means(anew),
-        confirmed=(
-            checkpoint == entry.submission.policy.checkpoint
-            and gain.low <= 0 <= gain.high
-            and anew.high >= replayed.low
-        ),
+        confirmed=gain.low <= 0 <= gain.high and anew.high >= replayed.low,
     )
 
 

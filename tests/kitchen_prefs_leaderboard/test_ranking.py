@@ -37,8 +37,8 @@ def test_equal_entries_share_a_rank_and_the_next_one_counts_them(make_entry, sho
 
 def test_a_difference_inside_the_paired_interval_is_a_tie(make_entry, shown):
     best, near = make_entry("a"), make_entry("b", worse=[0])
-    gain = difference(best, near)
-    assert gain.low == 0 < gain.mean == -difference(near, best).mean
+    gain = difference(best.episodes, near.episodes)
+    assert gain.low == 0 < gain.mean == -difference(near.episodes, best.episodes).mean
     assert shown([near, best]) == {"privileged": [("a", 1, True), ("b", 1, True)]}
 
 
@@ -50,7 +50,7 @@ def test_entries_whose_own_intervals_overlap_may_still_differ(make_entry, shown)
 
 def test_a_row_ties_with_the_first_of_a_rank_not_with_the_last(make_entry, shown):
     first, second, third = (make_entry("abc"[n], worse=range(2 * n)) for n in range(3))
-    assert difference(second, third).low == 0
+    assert difference(second.episodes, third.episodes).low == 0
     assert shown([first, second, third]) == {
         "privileged": [("a", 1, True), ("b", 1, True), ("c", 3, False)]
     }

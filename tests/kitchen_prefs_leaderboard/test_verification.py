@@ -6,7 +6,12 @@ from kitchen_prefs_leaderboard.ranking import rank
 from kitchen_prefs_leaderboard.scoring import score_submissions
 from kitchen_prefs_leaderboard.submission import Actor
 from kitchen_prefs_leaderboard.submitting import write_submission
-from kitchen_prefs_leaderboard.verification import judge, read_verifications, write_verification
+from kitchen_prefs_leaderboard.verification import (
+    check_policy,
+    judge,
+    read_verifications,
+    write_verification,
+)
 
 CHECKPOINT = "e" * 64  # of the entries in conftest.py
 SALT = 7
@@ -17,9 +22,8 @@ ALL = range(6)  # all sessions of a split that was cut short
 def found(few_episodes):
     """What a re-run of an entry comes to, in which some sessions go badly."""
 
-    def judged(entry, checkpoint=CHECKPOINT, rerun=(), fresh=()):
-        again, anew = few_episodes(rerun), few_episodes(fresh, SALT)
-        return judge(entry, checkpoint, again, anew, SALT)
+    def judged(entry, rerun=(), fresh=()):
+        return judge(entry, few_episodes(rerun), few_episodes(fresh, SALT), SALT)
 
     return judged
 
@@ -39,12 +43,15 @@ def test_a_few_sessions_that_went_otherwise_do_not_matter(make_entry, found):
     assert found(make_entry("a", worse=[0]), fresh=[1]).confirmed
 
 
-def test_another_checkpoint_confirms_nothing(make_entry, found):
-    assert not found(make_entry("a"), checkpoint="f" * 64).confirmed
+def test_another_policy_does_not_play(make_entry):
+    with pytest.raises(ValueError, match="fingerprint eeeeeeeeeeee, and this one has ffff"):
+        check_policy(make_entry("a").submission, "f" * 64)
 
 
-def test_a_submission_without_a_checkpoint_cannot_be_confirmed(make_entry, found):
-    assert not found(make_entry("a", policy=Actor(type="by_hand"))).confirmed
+def test_a_submission_without_a_checkpoint_cannot_be_confirmed(make_entry):
+    entry = make_entry("a", policy=Actor(type="by_hand"))
+    with pytest.raises(ValueError, match="names no checkpoint"):
+        check_policy(entry.submission, CHECKPOINT)
 
 
 def test_actions_better_than_the_policy_are_not_confirmed(make_entry, found):

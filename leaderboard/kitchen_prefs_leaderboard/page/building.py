@@ -96,7 +96,7 @@ def _entry_data(row: Row, verification: Verification | None) -> dict[str, Any]:
         "digest": entry.digest,
         "rank": row.rank,
         "tied": row.tied,
-        "verification": verification and verification.model_dump(exclude={"digest", "checkpoint"}),
+        "verification": verification and verification.model_dump(exclude={"digest"}),
         "metrics": {
             split: {name: _numbers(interval) for name, interval in of_split.items()}
             for split, of_split in entry.metrics.items()
