@@ -2,7 +2,7 @@
 
 import hashlib
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -81,14 +81,24 @@ class Actor:
 
     @property
     def fingerprint(self) -> str:
-        """A hash of the weights and of the settings that change what the policy does."""
+        """A hash of all weights and settings, the processors' too, that change what it does."""
+        sha = hashlib.sha256()
         settings = draccus.encode(self.policy.config, PreTrainedConfig)
-        settings = {name: settings[name] for name in settings if name not in NOT_BEHAVIOUR}
-        sha = hashlib.sha256(json.dumps(settings, sort_keys=True).encode())
-        for name, weight in sorted(self.policy.state_dict().items()):
-            sha.update(name.encode())
-            sha.update(weight.detach().cpu().reshape(-1).view(torch.uint8).numpy().tobytes())
+        _add(sha, settings, self.policy.state_dict())
+        for pipeline in (self.preprocessor, self.postprocessor):
+            for step in pipeline.steps:
+                _add(sha, {"step": type(step).__name__, **step.get_config()}, step.state_dict())
         return sha.hexdigest()
+
+
+def _add(
+    sha: "hashlib._Hash", settings: dict[str, Any], weights: Mapping[str, torch.Tensor]
+) -> None:
+    kept = {name: value for name, value in settings.items() if name not in NOT_BEHAVIOUR}
+    sha.update(json.dumps(kept, sort_keys=True).encode())
+    for name, weight in sorted(weights.items()):
+        sha.update(name.encode())
+        sha.update(weight.detach().cpu().reshape(-1).view(torch.uint8).numpy().tobytes())
 
 
 def load_actor(

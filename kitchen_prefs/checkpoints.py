@@ -21,7 +21,7 @@ from huggingface_hub import snapshot_download
 from huggingface_hub.errors import HFValidationError
 from lerobot.configs import PreTrainedConfig
 from lerobot.policies import PreTrainedPolicy, get_policy_class, make_pre_post_processors
-from lerobot.processor import PolicyProcessorPipeline
+from lerobot.processor import PolicyProcessorPipeline, ProcessorStepRegistry
 from lerobot.processor.pipeline import ProcessorMigrationError
 from safetensors import SafetensorError
 
@@ -37,6 +37,7 @@ READING_ERRORS = (
     ParsingError,
     ProcessorMigrationError,
     SafetensorError,
+    AttributeError,
     ImportError,
     KeyError,
     OSError,
@@ -122,13 +123,23 @@ def read_processors(
     """The pipelines to the policy's inputs and from its outputs.
 
     Raises:
-        ValueError: If one of their files is damaged.
+        ValueError: If one of their files is damaged, or has a step that is not LeRobot's or a
+            plug-in's.
     """
     for name in PROCESSORS:
-        _read_json(folder / name)
+        _check_steps(folder / name)
     overrides = {"device_processor": {"device": config.device}}
     with _damage_told(f"A processor in {folder}"):
         return make_pre_post_processors(config, str(folder), preprocessor_overrides=overrides)
+
+
+def _check_steps(file: Path) -> None:
+    """LeRobot would import and call whatever a step without a registered name says it is."""
+    with _damage_told(file):
+        steps = [step.get("registry_name") for step in _read_json(file)["steps"]]
+    for name in steps:
+        if name not in ProcessorStepRegistry.list():
+            raise ValueError(f"{file} has a step that is not registered, so it is not run.")
 
 
 def _read_json(file: Path) -> dict[str, Any]:

@@ -29,7 +29,12 @@ def main() -> None:
     except (ValueError, OSError) as error:
         if os.environ.get("KITCHEN_PREFS_DEBUG") == "1":
             raise
-        sys.exit(f"kitchen-prefs: {error}")
+        sys.exit(f"kitchen-prefs: {_printable(str(error))}")
+
+
+def _printable(text: str) -> str:
+    """Text without what a terminal would obey: a file's name can be a stranger's."""
+    return "".join(c if c.isprintable() or c == "\n" else "?" for c in text)
 
 
 def command_line() -> typer.Typer:

@@ -4,6 +4,7 @@ import json
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from shutil import rmtree
 from tempfile import TemporaryFile
 
 
@@ -23,6 +24,29 @@ def whole_file(path: Path) -> Iterator[Path]:
         beside.replace(path)
     finally:
         beside.unlink(missing_ok=True)
+
+
+@contextmanager
+def whole_folder(path: Path) -> Iterator[Path]:
+    """Write a folder beside its place first, and move it there once all is written.
+
+    Args:
+        path: The folder's place; what is there stays until the new folder is whole.
+
+    Yields:
+        The folder to write to, which is empty.
+    """
+    beside, before = (path.with_name(f".{state}-{path.name}") for state in ("unfinished", "before"))
+    rmtree(beside, ignore_errors=True)  # of a process that was killed
+    beside.mkdir(parents=True)
+    try:
+        yield beside
+        if path.exists():
+            path.replace(before)
+        beside.replace(path)
+    finally:
+        rmtree(beside, ignore_errors=True)
+        rmtree(before, ignore_errors=True)
 
 
 def write_json(path: Path, content: dict) -> None:

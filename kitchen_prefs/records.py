@@ -104,7 +104,7 @@ def _check_conditions(path: Path, conditions: Conditions) -> None:
             )
         write_json(header, asdict(conditions))
         return
-    there = _read_header(header, way_out)
+    there = read_header(header, way_out)
     differing = [name for name, value in asdict(conditions).items() if there.get(name) != value]
     if differing:
         raise ValueError(
@@ -113,12 +113,21 @@ def _check_conditions(path: Path, conditions: Conditions) -> None:
         )
 
 
-def _read_header(header: Path, way_out: str) -> dict:
+def read_header(header: Path, way_out: str) -> dict:
+    """Read the conditions of a file of episodes.
+
+    Args:
+        header: The file beside it.
+        way_out: Ends the error's sentence.
+
+    Raises:
+        ValueError: If it is no header.
+    """
     try:
         content = json.loads(header.read_text())
     except ValueError:
         content = None
-    if not isinstance(content, dict):
+    if not isinstance(content, dict) or "fingerprint" not in content:
         raise ValueError(f"{header} is damaged; {way_out}")
     return content
 

@@ -7,7 +7,6 @@ RUN/checkpoints/last    names the last one
 """
 
 from pathlib import Path
-from shutil import rmtree
 
 from lerobot.common.train_utils import (
     get_step_checkpoint_dir,
@@ -22,6 +21,8 @@ from lerobot.utils.random_utils import load_rng_state
 from safetensors.torch import load_file, save_file
 from sb3_contrib import MaskablePPO
 from stable_baselines3 import PPO
+
+from kitchen_prefs.files import whole_folder
 
 VALUE_HEAD = "value_head.safetensors"
 
@@ -46,15 +47,12 @@ def save_checkpoint(run: Path, learner: PPO | MaskablePPO, policy: PreTrainedPol
     """Save a checkpoint, whole or not at all, and let `last` name it."""
     interactions = learner.num_timesteps
     folder = get_step_checkpoint_dir(run, interactions, interactions)
-    beside = folder.with_name(f".unfinished-{folder.name}")
-    rmtree(beside, ignore_errors=True)
-    policy.save_pretrained(pretrained_model(beside))
-    for processor in make_pre_post_processors(policy.config):
-        processor.save_pretrained(pretrained_model(beside))
-    save_training_state(beside, interactions, learner.policy.optimizer)
-    save_file(learner.policy.value_net.state_dict(), beside / TRAINING_STATE_DIR / VALUE_HEAD)
-    rmtree(folder, ignore_errors=True)
-    beside.rename(folder)
+    with whole_folder(folder) as beside:
+        policy.save_pretrained(pretrained_model(beside))
+        for processor in make_pre_post_processors(policy.config):
+            processor.save_pretrained(pretrained_model(beside))
+        save_training_state(beside, interactions, learner.policy.optimizer)
+        save_file(learner.policy.value_net.state_dict(), beside / TRAINING_STATE_DIR / VALUE_HEAD)
     update_last_checkpoint(folder)
 
 

@@ -4,7 +4,6 @@ LeRobot and torch take seconds to import, so the commands import what needs them
 """
 
 import os
-import secrets
 from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
@@ -12,8 +11,8 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-from kitchen_prefs.environment import FRESH_SALTS
 from kitchen_prefs.files import make_folder
+from kitchen_prefs_leaderboard.submission import NOT_SAID
 
 app = typer.Typer(
     name="leaderboard",
@@ -60,9 +59,7 @@ def submit(
     policy_type: PolicyType = None,
     author: Annotated[list[str], typer.Option(help="Who submits; several.")] = ["anonymous"],  # noqa: B006
     link: Annotated[str | None, typer.Option(help="Where to read more.")] = None,
-    hardware: Annotated[
-        str | None, typer.Option(help="What it was trained on.", show_default="this machine")
-    ] = None,
+    hardware: Annotated[str, typer.Option(help="What it was trained on.")] = NOT_SAID,
     training: Annotated[
         str | None,
         typer.Option(help="On what, how long.", show_default="what train_config.json says"),
@@ -89,9 +86,9 @@ def submit(
         authors=author,
         link=link,
         track=track,
-        policy=submitting.played_by(player.actor),
-        hardware=hardware or submitting.this_machine(),
-        training=training or submitting.training_of(Path(path or "")),
+        policy=submitting.policy_of(player.actor),
+        hardware=hardware,
+        training=training or (submitting.training_of(path) if path else NOT_SAID),
     )
     played = player.play(out.with_name(f"{out.name}-episodes"), salt=0, jobs=jobs)
     submitting.write_submission(submission, played, out)
@@ -146,27 +143,33 @@ def verify(
     kitchen-prefs leaderboard verify leaderboard/submissions/ttp_plus --rerun
     --policy.path=policies/checkpoints/ttp_plus
     """
-    from kitchen_prefs_leaderboard.scoring import score_submissions
+    from kitchen_prefs_leaderboard import output, verification
+    from kitchen_prefs_leaderboard.scoring import read_known, score_submissions
 
-    if rerun:
-        make_folder(out, "--out")
-        make_folder(verifications, "--verifications")
-    elif path or policy_type or context.args:
-        raise ValueError("A policy plays again with --rerun only; add it.")
-    (entry,) = score_submissions([folder], jobs)
-    typer.echo(f"All actions of {folder} lead where it says.")
     if not rerun:
+        if path or policy_type or context.args:
+            raise ValueError("A policy plays again with --rerun only; add it.")
+        score_submissions([folder], jobs)
+        typer.echo(f"All actions of {folder} lead where it says.")
         typer.echo("Who chose them only a re-run tells: --rerun --policy.path=CHECKPOINT.")
         return
-    from kitchen_prefs_leaderboard import output, verification
+    make_folder(out, "--out")
+    make_folder(verifications, "--verifications")
     from kitchen_prefs_leaderboard.playing import load_player
+    from kitchen_prefs_leaderboard.submitting import policy_of
 
-    player = load_player(path, policy_type, context.args, entry.submission.track)
-    salt = salt or secrets.randbelow(FRESH_SALTS) + 1
-    found = verification.run_again(entry, player, salt, out / entry.digest[:12], jobs)
+    submission = read_known(folder)
+    player = load_player(path, policy_type, context.args, submission.track)
+    verification.check_policy(submission, policy_of(player.actor))
+    (entry,) = score_submissions([folder], jobs)
+    kept = out / entry.digest[:12]
+    salt = salt or verification.fresh_salt(kept)
+    found = verification.run_again(entry, player, salt, kept, jobs)
     file = verification.write_verification(found, verifications)
     console.print(output.to_comparison(found))
     typer.echo(f"{output.to_verdict(found)}\nThe record is {file}.")
+    if not found.confirmed:
+        raise typer.Exit(1)
 
 
 @app.command()
@@ -188,7 +191,7 @@ def page(
     from kitchen_prefs_leaderboard.verification import read_verifications
 
     verified = read_verifications(verifications)
-    write_page(rank(score_submissions(folders, jobs), verified), verified, out)
+    write_page(rank(score_submissions(folders, jobs), verified), out)
     typer.echo(f"The page is {out}; a browser opens it without a server.")
 
 

@@ -45,8 +45,11 @@ def to_comparison(found: Verification) -> Table:
 
 def to_verdict(found: Verification) -> str:
     """What a re-run says of a submission, in a sentence."""
-    verdict = "confirms" if found.confirmed else "does NOT confirm"
-    return f"The re-run {verdict} the submission; {found.same:.0%} of the episodes went alike."
+    alike = f"{found.same:.0%} of the episodes went alike"
+    if found.confirmed:
+        return f"The re-run confirms the submission; {alike}."
+    where = "the same sessions" if not found.repeats else "fresh sessions"
+    return f"The re-run does NOT confirm the submission: on {where} its Score differs; {alike}."
 
 
 def to_json(entries: Sequence[Entry], by: str | None) -> str:

@@ -8,7 +8,7 @@ from pathlib import Path
 from kitchen_prefs.actors import Actor, load_actor
 from kitchen_prefs.evaluation import settings_of
 from kitchen_prefs.metrics import Episode
-from kitchen_prefs.records import read_episodes
+from kitchen_prefs.records import read_episodes, read_header
 from kitchen_prefs.reproduction.processes import run_module
 from kitchen_prefs.splits import TEST_SPLITS, get_split, suggest
 from kitchen_prefs_leaderboard.submission import TRACKS
@@ -38,9 +38,11 @@ class Player:
             The episodes of each split, in the order of the sessions.
 
         Raises:
+            ValueError: If the folder has episodes of another policy, or the checkpoint changes.
             OSError: If an evaluation fails; the message names its log.
         """
         folder.mkdir(parents=True, exist_ok=True)
+        self._check_played(folder)
 
         def evaluate(splits: Sequence[str]) -> None:
             where = [f"--split={','.join(splits)}", f"--out={folder}", f"--salt={salt}"]
@@ -49,10 +51,17 @@ class Player:
 
         with ThreadPoolExecutor(jobs) as pool:
             list(pool.map(evaluate, shares(jobs)))
+        self._check_played(folder)
         return {
             split: sorted(read_episodes(folder / f"{split}.jsonl"), key=lambda one: one.session)
             for split in TEST_SPLITS
         }
+
+    def _check_played(self, folder: Path) -> None:
+        way_out = "delete that folder, or give another --out."
+        for header in folder.glob("*.header.json"):
+            if read_header(header, way_out)["fingerprint"] != self.actor.fingerprint:
+                raise ValueError(f"{folder} holds episodes of another policy; {way_out}")
 
 
 def shares(jobs: int) -> list[list[str]]:

@@ -1,7 +1,7 @@
 """The order of the entries: by Score, with ties where the sessions cannot tell two apart."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from kitchen_prefs_leaderboard.scoring import MEAN, Entry, difference
 from kitchen_prefs_leaderboard.submission import TRACKS
@@ -14,12 +14,14 @@ class Row:
 
     Attributes:
         entry: The entry.
+        verification: The re-run that confirms it; None where it was only replayed.
         rank: 1 for the best and all that tie with it; None where it was only replayed.
         tied: Whether others share the rank.
     """
 
     entry: Entry
-    rank: int | None
+    verification: Verification | None = None
+    rank: int | None = None
     tied: bool = False
 
 
@@ -32,31 +34,36 @@ def rank(entries: Sequence[Entry], verified: dict[str, Verification]) -> dict[st
     """
     tables = {}
     for track in TRACKS:
-        mine = sorted(
-            (entry for entry in entries if entry.submission.track == track),
-            key=lambda entry: -entry.metrics[MEAN]["Score"].mean,
-        )
-        again = [entry for entry in mine if entry.digest in verified]
-        rest = [Row(entry, None) for entry in mine if entry.digest not in verified]
-        if mine:
-            tables[track] = _ranked(again) + rest
+        rows = [Row(e, verified.get(e.digest)) for e in entries if e.submission.track == track]
+        rows.sort(key=_merit, reverse=True)
+        if rows:
+            tables[track] = [
+                *_ranked([row for row in rows if row.verification]),
+                *(row for row in rows if not row.verification),
+            ]
     return tables
 
 
-def _ranked(entries: Sequence[Entry]) -> list[Row]:
-    """Ranks of entries that are sorted by Score.
+def _merit(row: Row) -> float:
+    """The Score that counts: the lower one of the submission and its re-run."""
+    replayed = row.entry.metrics[MEAN]["Score"].mean
+    return min(replayed, row.verification.rerun.mean) if row.verification else replayed
 
-    An entry ties with the first of a rank as long as the paired interval of their difference holds
+
+def _ranked(rows: Sequence[Row]) -> list[Row]:
+    """Give ranks to rows that are sorted.
+
+    A row ties with the first of a rank as long as the paired interval of their difference holds
     zero.
     """
-    groups: list[list[Entry]] = []
-    for entry in entries:
-        if groups and difference(groups[-1][0].episodes, entry.episodes).low <= 0:
-            groups[-1].append(entry)
+    groups: list[list[Row]] = []
+    for row in rows:
+        if groups and difference(groups[-1][0].entry.episodes, row.entry.episodes).low <= 0:
+            groups[-1].append(row)
         else:
-            groups.append([entry])
-    rows, place = [], 1
+            groups.append([row])
+    ranked: list[Row] = []
     for group in groups:
-        rows += [Row(entry, place, tied=len(group) > 1) for entry in group]
-        place += len(group)
-    return rows
+        rank, tied = len(ranked) + 1, len(group) > 1
+        ranked += [replace(row, rank=rank, tied=tied) for row in group]
+    return ranked

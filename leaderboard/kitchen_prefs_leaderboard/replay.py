@@ -3,11 +3,12 @@
 from collections.abc import Sequence
 from pathlib import Path
 
+from kitchen_prefs import instances
 from kitchen_prefs.metrics import Episode
 from kitchen_prefs.play import Play
 from kitchen_prefs.sessions import make_session
 from kitchen_prefs_leaderboard.reading import read_lines
-from kitchen_prefs_leaderboard.submission import ACTIONS, Line
+from kitchen_prefs_leaderboard.submission import ACTIONS, FARTHEST, Line
 
 DECIMALS = 4  # a tenth of a millimetre, as in the data sets
 
@@ -56,7 +57,8 @@ def replay(split: str, line: Line, where: str) -> Episode:
 def write_line(episode: Episode) -> Line:
     """Say of an episode what a submission says of it.
 
-    Actions are rounded, except one that would then choose another instance.
+    Actions are rounded. One that would then choose another instance, or that lies too far away,
+    becomes the pose that it chose.
 
     Args:
         episode: An episode of a published session.
@@ -65,8 +67,7 @@ def write_line(episode: Episode) -> Line:
     first = play.digest()
     actions: list[Sequence[float]] = []
     for action, instance in zip(episode.actions, episode.decisions, strict=True):
-        rounded = _rounded(action)
-        actions.append(rounded if play.choose(rounded)[0] == instance else action)
+        actions.append(_written(action, instance, play))
         play.decide(instance, actions[-1])
     return Line(
         session=episode.session,
@@ -76,8 +77,14 @@ def write_line(episode: Episode) -> Line:
     )
 
 
-def _rounded(action: Sequence[float]) -> list[float]:
-    return [round(value, DECIMALS) for value in action]
+def _written(action: Sequence[float], instance: int, play: Play) -> Sequence[float]:
+    """An action as it is written, which chooses the instance that the action chose."""
+    rounded = [round(value, DECIMALS) for value in action]
+    near = all(abs(value) <= FARTHEST for value in rounded)
+    if near and play.choose(rounded)[0] == instance:
+        return rounded
+    row = play.seen.row_of(instance)
+    return [float(value) for value in play.seen.rows[row, instances.POSE]]
 
 
 def to_jsonl(lines: Sequence[Line]) -> bytes:

@@ -8,7 +8,7 @@ FOLDER/
 """
 
 from importlib.metadata import version
-from typing import Annotated, Literal
+from typing import Annotated, Literal, get_args
 
 from pydantic import BaseModel, ConfigDict, Field, StringConstraints, ValidationError
 
@@ -23,17 +23,20 @@ PACKAGES = {
     "kitchen_prefs": "lerobot_policy_kitchen_prefs",
     **{name: name for name in ("lerobot", "torch", "mujoco", "numpy", "gymnasium")},
 }
-TRACKS = ("standard", "privileged", "language", "open")
+NOT_SAID = "not said"
+Track = Literal["standard", "privileged", "language", "open"]
+TRACKS: tuple[str, ...] = get_args(Track)
 
-# Words with a space between, without control characters and line breaks of any kind: a name stands
-# in a terminal, too.
-WORDS = r"^[^\p{C}\p{Z}]+( [^\p{C}\p{Z}]+)*$"
+# Words with a space between, without control characters and line breaks of any kind, as a name
+# stands in terminals, too; a letter or a digit comes first, as "=" would compute in a spreadsheet.
+WORDS = r"^[\p{L}\p{N}][^\p{C}\p{Z}]*( [^\p{C}\p{Z}]+)*$"
 Text = Annotated[str, StringConstraints(max_length=200, pattern=WORDS)]
 Name = Annotated[str, StringConstraints(max_length=60, pattern=WORDS)]
 Link = Annotated[str, StringConstraints(max_length=300, pattern=r"^https?://[^\s\p{C}\"'<>]+$")]
 Hash = Annotated[str, StringConstraints(pattern=r"^[0-9a-f]{64}$")]  # SHA-256, hexadecimal
 # A pose in the kitchen, which is some metres wide: position (m) and quaternion (wxyz).
-Number = Annotated[float, Field(ge=-1000, le=1000)]
+FARTHEST = 1000
+Number = Annotated[float, Field(ge=-FARTHEST, le=FARTHEST)]
 Pose = tuple[Number, Number, Number, Number, Number, Number, Number]
 
 
@@ -43,7 +46,7 @@ class Strict(BaseModel):
     model_config = ConfigDict(strict=True, extra="forbid", frozen=True, allow_inf_nan=False)
 
 
-class Actor(Strict):
+class Policy(Strict):
     """What chose the actions.
 
     Attributes:
@@ -79,8 +82,8 @@ class Submission(Strict):
     name: Name
     authors: Annotated[list[Name], Field(min_length=1, max_length=50)]
     link: Link | None = None
-    track: Literal["standard", "privileged", "language", "open"]
-    policy: Actor
+    track: Track
+    policy: Policy
     data_version: Annotated[int, Field(ge=1, le=1000)]
     fingerprints: Annotated[dict[Name, Hash], Field(max_length=20)]
     packages: Annotated[dict[Name, Name], Field(max_length=50)]

@@ -2,18 +2,18 @@
 
 import bz2
 import json
-import os
-import platform
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from shutil import rmtree
 from typing import Any
 
+from lerobot.configs.train import TRAIN_CONFIG_NAME
 from pydantic import ValidationError
 from tqdm import tqdm
 
-from kitchen_prefs.actors import Actor as LoadedActor
+from kitchen_prefs.actors import Actor
+from kitchen_prefs.checkpoints import find_checkpoint
 from kitchen_prefs.datasets.manifest import published_fingerprint
+from kitchen_prefs.files import whole_folder
 from kitchen_prefs.metrics import Episode
 from kitchen_prefs.splits import DATA_VERSION, TEST_SPLITS
 from kitchen_prefs_leaderboard.replay import to_jsonl, write_line
@@ -21,7 +21,8 @@ from kitchen_prefs_leaderboard.submission import (
     ACTIONS,
     DESCRIPTION,
     FORMAT,
-    Actor,
+    NOT_SAID,
+    Policy,
     Submission,
     complaint,
     installed_packages,
@@ -35,7 +36,8 @@ def check_replaceable(folder: Path) -> None:
         ValueError: If something else than a submission is there.
     """
     known = {DESCRIPTION, *ACTIONS.values()}
-    if folder.exists() and not (folder.is_dir() and {f.name for f in folder.iterdir()} <= known):
+    ours = folder.is_dir() and not folder.is_symlink()
+    if folder.exists() and not (ours and {file.name for file in folder.iterdir()} <= known):
         raise ValueError(f"{folder} is something else than a submission; give another --out.")
 
 
@@ -49,16 +51,13 @@ def write_submission(
         played: The episodes of each test split, in the order of the sessions.
         folder: The submission's; an older one there is replaced.
     """
-    beside = folder.with_name(f".unfinished-{folder.name}")
-    rmtree(beside, ignore_errors=True)
-    beside.mkdir(parents=True)
-    for split, episodes in tqdm(played.items(), "Writing", unit="split", leave=False):
-        lines = to_jsonl([write_line(episode) for episode in episodes])
-        # A fifth smaller than gzip, and without a time in it: the same actions are the same bytes.
-        (beside / ACTIONS[split]).write_bytes(bz2.compress(lines))
-    (beside / DESCRIPTION).write_text(submission.model_dump_json(indent=2) + "\n")
-    rmtree(folder, ignore_errors=True)
-    beside.rename(folder)
+    check_replaceable(folder)
+    with whole_folder(folder) as beside:
+        for split, episodes in tqdm(played.items(), "Writing", unit="split", leave=False):
+            lines = to_jsonl([write_line(episode) for episode in episodes])
+            # A fifth smaller than gzip, and without a time in it: the same actions, the same bytes.
+            (beside / ACTIONS[split]).write_bytes(bz2.compress(lines))
+        (beside / DESCRIPTION).write_text(submission.model_dump_json(indent=2) + "\n")
 
 
 def describe(**about: Any) -> Submission:
@@ -86,26 +85,22 @@ def describe(**about: Any) -> Submission:
         raise ValueError(f"This cannot be submitted: {complaint(error)}") from error
 
 
-def played_by(actor: LoadedActor) -> Actor:
+def policy_of(actor: Actor) -> Policy:
     """What a submission says of a LeRobot policy."""
     policy = actor.policy
-    return Actor(
+    return Policy(
         type=policy.config.type,
         parameters=sum(weight.numel() for weight in policy.parameters()),
         checkpoint=actor.fingerprint,
     )
 
 
-def training_of(checkpoint: Path) -> str:
+def training_of(path: str) -> str:
     """What lerobot-train left of a training in a checkpoint, in a few words."""
-    file = checkpoint / "train_config.json"
-    if not file.is_file():
-        return "not said"
-    config = json.loads(file.read_text())
-    data = config["dataset"]["repo_id"]
-    return f"{config['steps']} steps of {config['batch_size']} decisions of {data}"
-
-
-def this_machine() -> str:
-    """What this machine is, in a few words."""
-    return f"{os.cpu_count()} cores, {platform.machine()}, {platform.system()}"
+    file = find_checkpoint(path) / TRAIN_CONFIG_NAME
+    try:
+        config = json.loads(file.read_text())
+        data = config["dataset"]["repo_id"]
+        return f"{config['steps']} steps of {config['batch_size']} decisions of {data}"
+    except (OSError, ValueError, KeyError, TypeError):  # another program's file, or none
+        return NOT_SAID

@@ -5,20 +5,24 @@ that nobody knew when the submission was made. What came of it is kept by whoeve
 leaderboard, never in a submission: VERIFICATIONS/<digest of the submission>.json.
 """
 
+import secrets
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
+from math import hypot
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 from pydantic import Field, ValidationError
 
 from kitchen_prefs import metrics
+from kitchen_prefs.environment import FRESH_SALTS
 from kitchen_prefs.files import write_json
 from kitchen_prefs.metrics import Episode, Interval, mean_of_splits
 from kitchen_prefs_leaderboard.scoring import MEAN, Entry, difference
 from kitchen_prefs_leaderboard.submission import (
     Hash,
     Name,
+    Policy,
     Strict,
     Submission,
     installed_packages,
@@ -47,7 +51,8 @@ class Verification(Strict):
         replayed: Score of the submission's actions.
         rerun: Score of the policy on the same sessions.
         fresh: Score of the policy on the fresh sessions.
-        confirmed: Whether the re-run confirms the submission.
+        repeats: Whether it is as good on the same sessions as the submission.
+        generalises: Whether it is as good on the fresh sessions.
     """
 
     digest: Hash
@@ -57,7 +62,13 @@ class Verification(Strict):
     replayed: Means
     rerun: Means
     fresh: Means
-    confirmed: bool
+    repeats: bool
+    generalises: bool
+
+    @property
+    def confirmed(self) -> bool:
+        """Whether the re-run confirms the submission."""
+        return self.repeats and self.generalises
 
 
 def read_verifications(folder: Path) -> dict[str, Verification]:
@@ -87,24 +98,31 @@ def write_verification(verification: Verification, folder: Path) -> Path:
     return file
 
 
-def check_policy(submission: Submission, checkpoint: str) -> None:
+def check_policy(submission: Submission, policy: Policy) -> None:
     """Make sure that a policy is the one that a submission names.
 
     Args:
         submission: Who is said to have acted.
-        checkpoint: The fingerprint of the policy that is to run again.
+        policy: What is to run again.
 
     Raises:
         ValueError: If it is another one, or if the submission names none.
     """
-    named = submission.policy.checkpoint
-    if named is None:
+    if submission.policy.checkpoint is None:
         raise ValueError("The submission names no checkpoint, so nothing can be run again.")
-    if named != checkpoint:
+    if submission.policy != policy:
         raise ValueError(
-            f"The submission is of a policy with the fingerprint {named[:12]}, and this one has "
-            f"{checkpoint[:12]}; give the submission's --policy.path or --policy.type."
+            f"The submission is of another policy ({_named(submission.policy)}) than this one "
+            f"({_named(policy)}); give the submission's --policy.path or --policy.type."
         )
+
+
+def fresh_salt(folder: Path) -> int:
+    """The salt of a re-run that was begun in a folder, or else a new one."""
+    begun = sorted(folder.glob("salt-[1-9]*"))
+    if begun:
+        return int(begun[0].name.removeprefix("salt-"))
+    return secrets.randbelow(FRESH_SALTS - 1) + 1
 
 
 def run_again(entry: Entry, player: "Player", salt: int, folder: Path, jobs: int) -> Verification:
@@ -118,10 +136,8 @@ def run_again(entry: Entry, player: "Player", salt: int, folder: Path, jobs: int
         jobs: How many processes share the splits.
 
     Raises:
-        ValueError: If it is another policy.
         OSError: If an evaluation fails; the message names its log.
     """
-    check_policy(entry.submission, player.actor.fingerprint)
     rerun, fresh = (player.play(folder / f"salt-{drawing}", drawing, jobs) for drawing in (0, salt))
     return judge(entry, rerun, fresh, salt)
 
@@ -135,8 +151,8 @@ def judge(
     """Hold a re-run against a submission.
 
     It confirms the submission if on the same sessions the paired interval of the difference in
-    Score holds zero, and if the policy is not worse on fresh sessions: then it has not merely
-    learned the published ones.
+    Score holds zero, and if on fresh sessions the policy is not worse by more than both intervals
+    allow, their halves added as those of independent means: it has not learned the published ones.
 
     Args:
         entry: The submission, replayed.
@@ -157,8 +173,15 @@ def judge(
         replayed=_means(replayed),
         rerun=_means(mean_of_splits(list(rerun.values()), metrics.score)),
         fresh=_means(anew),
-        confirmed=gain.low <= 0 <= gain.high and anew.high >= replayed.low,
+        repeats=gain.low <= 0 <= gain.high,
+        generalises=replayed.mean - anew.mean
+        <= hypot(replayed.mean - replayed.low, anew.high - anew.mean),
     )
+
+
+def _named(policy: Policy) -> str:
+    checkpoint = (policy.checkpoint or "no checkpoint")[:12]
+    return f"{policy.type}, {policy.parameters} parameters, {checkpoint}"
 
 
 def _means(interval: Interval) -> Means:

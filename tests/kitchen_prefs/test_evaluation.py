@@ -80,6 +80,31 @@ def test_a_setting_that_changes_what_it_does_changes_the_fingerprint(tmp_path):
     )
 
 
+def rewrite(file, change):
+    """Change a JSON file in place."""
+    content = json.loads(file.read_text())
+    change(content)
+    file.write_text(json.dumps(content))
+
+
+def test_a_processor_that_changes_what_it_does_changes_the_fingerprint(tmp_path):
+    before = load_actor(str(save_act(tmp_path))).fingerprint
+    rewrite(
+        tmp_path / "policy_postprocessor.json",
+        lambda processor: processor["steps"][0]["config"].update(eps=5.0),
+    )
+    assert load_actor(str(tmp_path)).fingerprint != before
+
+
+def test_a_processor_step_that_names_a_program_is_not_run(tmp_path):
+    folder, trace = save_act(tmp_path / "policy"), tmp_path / "trace"
+    step = {"class": "subprocess.Popen", "config": {"args": ["touch", str(trace)]}}
+    rewrite(folder / "policy_preprocessor.json", lambda found: found["steps"].append(step))
+    with pytest.raises(ValueError, match=r"policy_preprocessor\.json has a step that is not reg"):
+        load_actor(str(folder))
+    assert not trace.exists()
+
+
 def test_a_checkpoint_that_does_not_fit_is_refused(tmp_path):
     with pytest.raises(ValueError, match=r"'observation\.state' of shape \(9,\)"):
         load_actor(str(save_act(tmp_path, state_size=9)))

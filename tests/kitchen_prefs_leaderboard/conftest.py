@@ -15,7 +15,7 @@ from kitchen_prefs.sessions import expert_run, make_session
 from kitchen_prefs.splits import SPLITS, TEST_SPLITS, get_split
 from kitchen_prefs_leaderboard.replay import to_jsonl, write_line
 from kitchen_prefs_leaderboard.scoring import Entry
-from kitchen_prefs_leaderboard.submission import ACTIONS, DESCRIPTION, Actor
+from kitchen_prefs_leaderboard.submission import ACTIONS, DESCRIPTION, Policy
 from kitchen_prefs_leaderboard.submitting import describe
 
 
@@ -36,7 +36,7 @@ def description(**about):
         "name": "The expert",
         "authors": ["A. Person"],
         "track": "privileged",
-        "policy": Actor(type="expert", checkpoint="e" * 64),
+        "policy": Policy(type="expert", checkpoint="e" * 64),
         "hardware": "none",
         "training": "none",
     }

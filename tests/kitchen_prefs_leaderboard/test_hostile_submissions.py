@@ -231,6 +231,7 @@ def test_numbers_that_are_none(folder, number):
         ("name", "\x1b[31mred"),
         ("name", "\u202egnp.exe"),
         ("name", "x" * 61),
+        ("name", "=1+1"),
         ("track", "secret"),
         ("link", "javascript:alert(1)"),
         ("data_version", True),
@@ -294,7 +295,13 @@ def test_a_link_to_a_folder_is_the_operators(folder, tmp_path):
     assert read_description(link) == read_description(folder)
 
 
-@pytest.mark.parametrize("name", ["../../outside", "/etc/passwd", "C:\\x", "~", "${HOME}"])
+def test_a_folders_name_does_not_reach_the_terminal_as_it_is(kitchen_prefs, tmp_path):
+    said = kitchen_prefs("leaderboard", "score", tmp_path / "a\x1b]0;owned\x07")
+    assert said.isprintable()
+    assert "a?]0;owned?" in said
+
+
+@pytest.mark.parametrize("name", ["a/../../outside", "C:\\x", "a${HOME}"])
 def test_a_name_is_never_a_path(folder, tmp_path, name):
     about = ABOUT | {"name": name, "policy": {"type": name}, "fingerprints": {name: "0" * 64}}
     (folder / DESCRIPTION).write_text(json.dumps(about))

@@ -89,7 +89,8 @@ def verified(entries):
             replayed=means,
             rerun=means,
             fresh=means,
-            confirmed=True,
+            repeats=True,
+            generalises=True,
         )
     }
 
@@ -101,10 +102,10 @@ def tables(entries, verified):
 
 
 @pytest.fixture(scope="module")
-def file(tables, verified, tmp_path_factory):
+def file(tables, tmp_path_factory):
     """The page."""
     out = tmp_path_factory.mktemp("page") / "leaderboard.html"
-    write_page(tables, verified, out)
+    write_page(tables, out)
     return out
 
 
@@ -153,12 +154,12 @@ def test_ranked_rows_stand_first_and_the_others_have_no_rank(page):
     assert ranks == ["1", "\u2013", "\u2013"]
 
 
-def test_a_tie_shows(tables, verified, tmp_path, browser):
+def test_a_tie_shows(tables, tmp_path, browser):
     tied = {
         track: [replace(row, rank=2, tied=True) for row in rows] for track, rows in tables.items()
     }
     out = tmp_path / "tied.html"
-    write_page(tied, verified, out)
+    write_page(tied, out)
     page = browser.new_page()
     page.goto(out.as_uri(), timeout=PATIENCE)
     assert set(page.locator("td.rank").all_text_contents()) == {"2 ="}

@@ -7,6 +7,7 @@ import pytest
 from kitchen_prefs_leaderboard.ranking import rank
 from kitchen_prefs_leaderboard.scoring import MEAN, difference, score_submissions
 from kitchen_prefs_leaderboard.submitting import write_submission
+from kitchen_prefs_leaderboard.verification import judge
 
 ALL = range(6)  # all sessions of a split that was cut short
 
@@ -16,7 +17,10 @@ def shown():
     """The name, rank and tie of each row of each track."""
 
     def show(entries, again=None):
-        verified = dict.fromkeys(entry.digest for entry in (entries if again is None else again))
+        verified = {
+            entry.digest: judge(entry, entry.episodes, entry.episodes, 1)
+            for entry in (entries if again is None else again)
+        }
         return {
             track: [(row.entry.submission.name, row.rank, row.tied) for row in rows]
             for track, rows in rank(entries, verified).items()
@@ -54,6 +58,16 @@ def test_a_row_ties_with_the_first_of_a_rank_not_with_the_last(make_entry, shown
     assert shown([first, second, third]) == {
         "privileged": [("a", 1, True), ("b", 1, True), ("c", 3, False)]
     }
+
+
+def test_what_a_rerun_does_not_reach_does_not_count(make_entry):
+    inflated, honest = make_entry("a"), make_entry("b", worse=[0])
+    records = {
+        "a" * 64: judge(inflated, make_entry("c", worse=range(3)).episodes, honest.episodes, 1),
+        "b" * 64: judge(honest, honest.episodes, honest.episodes, 1),
+    }
+    rows = rank([inflated, honest], records)["privileged"]
+    assert [row.entry.submission.name for row in rows] == ["b", "a"]
 
 
 def test_rows_that_were_only_replayed_stand_last_however_good(make_entry, shown):

@@ -166,7 +166,18 @@ def test_what_is_written_of_an_episode_is_that_episode(split, index, seed, jitte
     assert values["ED"] <= values["ED_c"] <= 1
 
 
-def test_an_action_whose_rounding_would_choose_another_instance_is_kept(few_episodes):
+def test_an_action_too_far_away_becomes_the_pose_that_it_chose(few_episodes):
+    play = Play(make_session("seen", 0))
+    while not (play.terminated or play.truncated):
+        play.act((5000.0, -5000.0, 0.0, 1.0, 0.0, 0.0, 0.0))
+    line = write_line(play.episode())
+    assert replay("seen", line, "here").decisions == play.episode().decisions
+    assert max(abs(number) for action in line.actions for number in action) < 10
+
+
+def test_an_action_whose_rounding_would_choose_another_becomes_its_pose(
+    few_episodes,
+):
     session = make_session("seen", 0)
     start, actions = Play(session), few_episodes()["seen"][0].actions
 
@@ -188,5 +199,6 @@ def test_an_action_whose_rounding_would_choose_another_instance_is_kept(few_epis
             play.act(between(share))
         line = write_line(play.episode())
         assert replay("seen", line, "here").decisions == play.episode().decisions
-        kept.append(line.actions[0] == between(share))
+        rounded = tuple(round(number, 4) for number in between(share))
+        kept.append(line.actions[0] == rounded)
     assert sorted(kept) == [False, True]  # both are rounded to one pose, which chooses as one does

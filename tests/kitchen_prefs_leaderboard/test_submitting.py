@@ -18,7 +18,7 @@ from kitchen_prefs.splits import TEST_SPLITS
 from kitchen_prefs_leaderboard import playing
 from kitchen_prefs_leaderboard.scoring import score_submissions
 from kitchen_prefs_leaderboard.submission import ACTIONS, installed_packages
-from kitchen_prefs_leaderboard.submitting import played_by, training_of
+from kitchen_prefs_leaderboard.submitting import policy_of, training_of
 from kitchen_prefs_leaderboard.verification import read_verifications
 
 CHECKPOINT = Path(__file__).parents[2] / "policies" / "checkpoints" / "ttp_quick"
@@ -167,14 +167,32 @@ def test_another_folder_is_not_replaced(kitchen_prefs, tmp_path):
     assert not episodes_of(tmp_path).exists()
 
 
+def test_a_link_is_not_replaced(kitchen_prefs, tmp_path):
+    (tmp_path / "folder").mkdir()
+    (tmp_path / "link").symlink_to(tmp_path / "folder")
+    said = kitchen_prefs(*SUBMIT, f"--out={tmp_path / 'link'}")
+    assert "is something else than a submission; give another --out." in said
+
+
+def test_episodes_of_another_policy_are_not_submitted(submitted, here, kitchen_prefs, tmp_path):
+    header = (episodes_of(submitted) / "seen.header.json").read_text()
+    kept = episodes_of(tmp_path / "out")
+    kept.mkdir()
+    fingerprint = json.loads(header)["fingerprint"]
+    (kept / "seen.header.json").write_text(header.replace(fingerprint, "0" * 64))
+    said = kitchen_prefs(*SUBMIT, f"--out={tmp_path / 'out'}")
+    assert "out-episodes holds episodes of another policy; delete that folder" in said
+    assert list(kept.iterdir()) == [kept / "seen.header.json"]
+
+
 def test_a_checkpoint_is_named_by_what_it_learned_and_how():
     actor = load_actor(str(CHECKPOINT))
-    said = played_by(actor)
+    said = policy_of(actor)
     assert said.type == "ttp"
     assert said.parameters == sum(weight.numel() for weight in actor.policy.parameters()) > 0
     assert said.checkpoint == actor.fingerprint
     config = json.loads((CHECKPOINT / "train_config.json").read_text())
-    assert training_of(CHECKPOINT) == (
+    assert training_of(str(CHECKPOINT)) == (
         f"{config['steps']} steps of 32 decisions of kitchen_prefs/dishwasher-train-v1"
     )
 
@@ -203,7 +221,9 @@ def test_a_rerun_by_the_same_policy_confirms_and_another_is_refused(
     assert record.replayed.mean == round(entry.metrics["mean"]["Score"].mean, 4)
     assert 0 < record.fresh.mean != record.replayed.mean
     said = kitchen_prefs(*arguments, "--policy.rule=majority")
-    assert said.startswith("kitchen-prefs: The submission is of a policy with the fingerprint")
+    assert said.startswith(
+        "kitchen-prefs: The submission is of another policy (rules, 0 parameters, "
+    )
     assert list(read_verifications(records).values()) == [record]
 
 

@@ -4,7 +4,7 @@ import pytest
 
 from kitchen_prefs_leaderboard.ranking import rank
 from kitchen_prefs_leaderboard.scoring import score_submissions
-from kitchen_prefs_leaderboard.submission import Actor
+from kitchen_prefs_leaderboard.submission import Policy
 from kitchen_prefs_leaderboard.submitting import write_submission
 from kitchen_prefs_leaderboard.verification import (
     check_policy,
@@ -13,7 +13,6 @@ from kitchen_prefs_leaderboard.verification import (
     write_verification,
 )
 
-CHECKPOINT = "e" * 64  # of the entries in conftest.py
 SALT = 7
 ALL = range(6)  # all sessions of a split that was cut short
 
@@ -44,14 +43,17 @@ def test_a_few_sessions_that_went_otherwise_do_not_matter(make_entry, found):
 
 
 def test_another_policy_does_not_play(make_entry):
-    with pytest.raises(ValueError, match="fingerprint eeeeeeeeeeee, and this one has ffff"):
-        check_policy(make_entry("a").submission, "f" * 64)
+    submission = make_entry("a").submission
+    check_policy(submission, submission.policy)
+    for other in ({"checkpoint": "f" * 64}, {"parameters": 12}, {"type": "another"}):
+        with pytest.raises(ValueError, match=r"is of another policy \(expert, .* than this one"):
+            check_policy(submission, submission.policy.model_copy(update=other))
 
 
 def test_a_submission_without_a_checkpoint_cannot_be_confirmed(make_entry):
-    entry = make_entry("a", policy=Actor(type="by_hand"))
+    entry = make_entry("a", policy=Policy(type="by_hand"))
     with pytest.raises(ValueError, match="names no checkpoint"):
-        check_policy(entry.submission, CHECKPOINT)
+        check_policy(entry.submission, entry.submission.policy)
 
 
 def test_actions_better_than_the_policy_are_not_confirmed(make_entry, found):

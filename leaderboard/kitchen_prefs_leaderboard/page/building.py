@@ -25,7 +25,6 @@ from kitchen_prefs_leaderboard.page.drawing import (
 )
 from kitchen_prefs_leaderboard.ranking import Row
 from kitchen_prefs_leaderboard.scoring import MEAN
-from kitchen_prefs_leaderboard.verification import Verification
 
 TEMPLATES = files("kitchen_prefs_leaderboard.page") / "templates"
 # In this order they make up one script.
@@ -43,24 +42,19 @@ POLICY = (
 )
 
 
-def write_page(
-    tables: Mapping[str, Sequence[Row]], verified: Mapping[str, Verification], out: Path
-) -> None:
+def write_page(tables: Mapping[str, Sequence[Row]], out: Path) -> None:
     """Write the leaderboard as one HTML file, whole or not at all.
 
     Args:
         tables: The rows of each track.
-        verified: Re-runs that confirm an entry, by its digest.
         out: The file.
     """
-    html = to_html(page_data(tables, verified))
+    html = to_html(page_data(tables))
     with whole_file(out) as beside:
         beside.write_text(html, encoding="utf-8")
 
 
-def page_data(
-    tables: Mapping[str, Sequence[Row]], verified: Mapping[str, Verification]
-) -> dict[str, Any]:
+def page_data(tables: Mapping[str, Sequence[Row]]) -> dict[str, Any]:
     """All that the page shows."""
     rows = [row for of_track in tables.values() for row in of_track]
     sessions = sessions_data(TEST_SPLITS)
@@ -70,7 +64,7 @@ def page_data(
         "metrics": list(METRICS),
         "splits": {split: get_split(split).sessions for split in TEST_SPLITS},
         "reasons": list(rows[0].entry.shortcomings[TEST_SPLITS[0]]),
-        "entries": [_entry_data(row, verified.get(row.entry.digest)) for row in rows],
+        "entries": [_entry_data(row) for row in rows],
         "layout": layout_data(),
         "preferences": preferences_in_words(sessions),
         "sessions": sessions,
@@ -89,8 +83,8 @@ def to_html(data: Mapping[str, Any]) -> str:
     )
 
 
-def _entry_data(row: Row, verification: Verification | None) -> dict[str, Any]:
-    entry = row.entry
+def _entry_data(row: Row) -> dict[str, Any]:
+    entry, verification = row.entry, row.verification
     return {
         "submission": entry.submission.model_dump(exclude={"format", "fingerprints"}),
         "digest": entry.digest,

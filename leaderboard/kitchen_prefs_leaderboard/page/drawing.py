@@ -8,6 +8,7 @@ changes is replayed by the page itself (kitchen.js).
 from collections.abc import Iterable
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from kitchen_prefs.kitchen import placement_table, rack_position
 from kitchen_prefs.metrics import (
@@ -99,23 +100,12 @@ def _on_counter(session: Session) -> list[int]:
 
 def _shadow(extents: tuple[float, float, float], pose: np.ndarray) -> list[int]:
     """Centre, half axes and angle of an ellipsoid's shadow on the floor."""
-    axes = _rotation(pose[3:]) * (np.array(extents) / 2)  # (3, 3), a half axis each column
+    rotation = Rotation.from_quat(pose[3:], scalar_first=True).as_matrix()  # (3, 3)
+    axes = rotation * (np.array(extents) / 2)  # (3, 3), a half axis each column
     squares, directions = np.linalg.eigh((axes @ axes.T)[:2, :2])  # the shorter one first
     long = directions[:, 1] * np.sign(directions[:, 1] @ axes[:2, 0] or 1)
     angle = np.degrees(np.arctan2(long[1], long[0]))
     return [*_millimetres(pose[:2]), *_millimetres(np.sqrt(squares[::-1])), round(angle)]
-
-
-def _rotation(quaternion: np.ndarray) -> np.ndarray:
-    """The matrix of a quaternion (wxyz), (3, 3)."""
-    w, x, y, z = quaternion / np.linalg.norm(quaternion)
-    return np.array(
-        [
-            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
-        ]
-    )
 
 
 def _millimetres(lengths: Iterable[float]) -> list[int]:
