@@ -190,6 +190,8 @@ def page(
     from kitchen_prefs_leaderboard.scoring import score_submissions
     from kitchen_prefs_leaderboard.verification import read_verifications
 
+    if verifications != KEPT and not verifications.is_dir():
+        raise ValueError(f"There is no folder {verifications}; give another --verifications.")
     verified = read_verifications(verifications)
     write_page(rank(score_submissions(folders, jobs), verified), out)
     typer.echo(f"The page is {out}; a browser opens it without a server.")

@@ -4,16 +4,13 @@ import csv
 import io
 import json
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import asdict
 
 from rich.table import Table
 from rich.text import Text
 
 from kitchen_prefs.metrics import METRICS, Interval
-from kitchen_prefs_leaderboard.scoring import Entry
+from kitchen_prefs_leaderboard.scoring import Entry, rounded
 from kitchen_prefs_leaderboard.verification import Verification
-
-DIGITS = 4  # the bootstrap tells no more than three; a fourth keeps rounding out of them
 
 
 def to_tables(entry: Entry, by: str | None) -> Iterator[Table]:
@@ -60,9 +57,9 @@ def to_json(entries: Sequence[Entry], by: str | None) -> str:
             "track": entry.submission.track,
             "data_version": entry.submission.data_version,
             "digest": entry.digest,
-            "splits": _rounded(entry.metrics),
+            "splits": _tree(entry.metrics),
             "shortcomings": entry.shortcomings,
-            **({by: _rounded(entry.grouped(by))} if by else {}),
+            **({by: _tree(entry.grouped(by))} if by else {}),
         }
         for entry in entries
     ]
@@ -78,11 +75,11 @@ def to_csv(entries: Sequence[Entry], by: str | None) -> str:
         who = [entry.submission.name, entry.submission.track]
         for split, of_split in entry.metrics.items():
             for name, interval in of_split.items():
-                writer.writerow([*who, split, "all", name, *_numbers(interval).values()])
+                writer.writerow([*who, split, "all", name, *rounded(interval).values()])
         for split, of_groups in (entry.grouped(by) if by else {}).items():
             for group, of_group in of_groups.items():
                 for name, interval in of_group.items():
-                    writer.writerow([*who, split, group, name, *_numbers(interval).values()])
+                    writer.writerow([*who, split, group, name, *rounded(interval).values()])
     return file.getvalue()
 
 
@@ -105,12 +102,8 @@ def _short(value: float) -> str:
     return f"{value:.2f}".replace("0.", ".", 1)
 
 
-def _numbers(interval: Interval) -> dict[str, float]:
-    return {name: round(value, DIGITS) for name, value in asdict(interval).items()}
-
-
-def _rounded(tree: dict) -> dict:
+def _tree(tree: dict) -> dict:
     return {
-        key: _numbers(value) if isinstance(value, Interval) else _rounded(value)
+        key: rounded(value) if isinstance(value, Interval) else _tree(value)
         for key, value in tree.items()
     }

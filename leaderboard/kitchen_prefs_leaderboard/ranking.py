@@ -35,7 +35,7 @@ def rank(entries: Sequence[Entry], verified: dict[str, Verification]) -> dict[st
     tables = {}
     for track in TRACKS:
         rows = [Row(e, verified.get(e.digest)) for e in entries if e.submission.track == track]
-        rows.sort(key=_merit, reverse=True)
+        rows.sort(key=lambda row: (-_merit(row), row.entry.submission.name))
         if rows:
             tables[track] = [
                 *_ranked([row for row in rows if row.verification]),

@@ -4,7 +4,7 @@ import hashlib
 from collections.abc import Iterable, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from functools import cached_property
 from itertools import product
 from pathlib import Path
@@ -27,6 +27,7 @@ from kitchen_prefs_leaderboard.replay import replay_split
 from kitchen_prefs_leaderboard.submission import Submission
 
 MEAN = "mean"  # stands beside the splits' names: each split counts the same
+DIGITS = 4  # the bootstrap tells no more than three; a fourth keeps rounding out of them
 
 
 @dataclass(frozen=True)
@@ -142,6 +143,11 @@ def difference(
     """
     theirs = {(e.split, e.session): score(e) for of in others.values() for e in of}
     return mean_of_splits(list(episodes.values()), lambda e: score(e) - theirs[e.split, e.session])
+
+
+def rounded(interval: Interval) -> dict[str, float]:
+    """Mean, low and high as they are written."""
+    return {name: round(value, DIGITS) for name, value in asdict(interval).items()}
 
 
 def _replay(work: Sequence[tuple[Path, str]], jobs: int) -> dict[tuple[Path, str], list[Episode]]:

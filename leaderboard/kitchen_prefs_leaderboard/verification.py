@@ -7,7 +7,6 @@ leaderboard, never in a submission: VERIFICATIONS/<digest of the submission>.jso
 
 import secrets
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict
 from math import hypot
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -18,7 +17,7 @@ from kitchen_prefs import metrics
 from kitchen_prefs.environment import FRESH_SALTS
 from kitchen_prefs.files import write_json
 from kitchen_prefs.metrics import Episode, Interval, mean_of_splits
-from kitchen_prefs_leaderboard.scoring import MEAN, Entry, difference
+from kitchen_prefs_leaderboard.scoring import MEAN, Entry, difference, rounded
 from kitchen_prefs_leaderboard.submission import (
     Hash,
     Name,
@@ -185,4 +184,4 @@ def _named(policy: Policy) -> str:
 
 
 def _means(interval: Interval) -> Means:
-    return Means(**{name: round(value, 4) for name, value in asdict(interval).items()})
+    return Means(**rounded(interval))

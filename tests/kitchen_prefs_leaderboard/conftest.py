@@ -46,6 +46,7 @@ def description(**about):
 @pytest.fixture(scope="session")
 def expert_files():
     """The files of an honest submission, by name."""
+    assert get_split("seen").sessions == 70, "few_sessions was asked for before"
     files = {}
     for split in TEST_SPLITS:
         sessions = range(get_split(split).sessions)

@@ -8,7 +8,6 @@ import base64
 import hashlib
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict
 from importlib.resources import files
 from pathlib import Path
 from string import Template
@@ -24,12 +23,11 @@ from kitchen_prefs_leaderboard.page.drawing import (
     sessions_data,
 )
 from kitchen_prefs_leaderboard.ranking import Row
-from kitchen_prefs_leaderboard.scoring import MEAN
+from kitchen_prefs_leaderboard.scoring import MEAN, rounded
 
 TEMPLATES = files("kitchen_prefs_leaderboard.page") / "templates"
 # In this order they make up one script.
 SCRIPTS = ("basics", "table", "charts", "shortcomings", "kitchen", "drawing", "player", "page")
-DIGITS = 4
 # What is drawn by the number of dishes: a split with training's numbers and one with others.
 BY_COUNT = {
     "Preferences of the training": ("seen", "unseen_counts"),
@@ -117,7 +115,7 @@ def _by_count(episodes: Sequence[Episode]) -> list[list[float]]:
 
 
 def _numbers(interval: Interval) -> list[float]:
-    return [round(value, DIGITS) for value in asdict(interval).values()]
+    return list(rounded(interval).values())
 
 
 def _harmless(data: Mapping[str, Any]) -> str:
