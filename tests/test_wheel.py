@@ -34,3 +34,4 @@ def test_data_and_recipes_are_installed(names):
     assert "kitchen_prefs/data/fingerprints.json" in names
     assert "kitchen_prefs/datasets/card.md" in names
     assert "lerobot_policy_kitchen_prefs/recipes/ttp_quick.yaml" in names
+    assert "kitchen_prefs_leaderboard/page/templates/page.html" in names
