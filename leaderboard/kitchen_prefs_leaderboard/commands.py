@@ -29,7 +29,7 @@ PolicyPath = Annotated[
 PolicyType = Annotated[
     str | None, typer.Option("--policy.type", help="A policy that needs no training.")
 ]
-Verifications = Annotated[Path, typer.Option(help="Keeps what re-runs came to.")]
+Verifications = Annotated[Path, typer.Option(help="The records of re-runs.")]
 KEPT = Path("leaderboard/verifications")
 ANY_SETTING = {"allow_extra_args": True, "ignore_unknown_options": True}
 
@@ -151,7 +151,7 @@ def verify(
             raise ValueError("A policy plays again with --rerun only; add it.")
         score_submissions([folder], jobs)
         typer.echo(f"All actions of {folder} lead where it says.")
-        typer.echo("Who chose them only a re-run tells: --rerun --policy.path=CHECKPOINT.")
+        typer.echo("Who chose them only a re-run tells: add --rerun and the policy.")
         return
     make_folder(out, "--out")
     make_folder(verifications, "--verifications")
@@ -184,6 +184,8 @@ def page(
     For example:
     kitchen-prefs leaderboard page leaderboard/submissions/* --out=outputs/leaderboard.html
     """
+    if out.is_dir():
+        raise ValueError(f"{out} is a folder; give --out a file in it.")
     make_folder(out.parent, "--out")
     from kitchen_prefs_leaderboard.page.building import write_page
     from kitchen_prefs_leaderboard.ranking import rank

@@ -14,13 +14,14 @@ from kitchen_prefs_leaderboard.verification import Verification
 
 
 def to_tables(entry: Entry, by: str | None) -> Iterator[Table]:
-    """An entry's metrics for the terminal; each mean stands above its 95 % interval."""
-    metrics = _table(entry.submission.name, "Split", *METRICS)
+    """An entry's metrics for the terminal."""
+    title = f"{entry.submission.name}: means, and their 95 % intervals"
+    metrics = _table(title, "Split", *METRICS)
     for split, of_split in entry.metrics.items():
         metrics.add_row(split, *_cells(of_split))
     yield metrics
     if by:
-        groups = _table(f"{entry.submission.name}, by {by}", "Split", *METRICS)
+        groups = _table(f"{title}, by {by}", "Split", *METRICS)
         for split, of_groups in entry.grouped(by).items():
             for group, of_group in of_groups.items():
                 groups.add_row(f"{split}\n{by} {group}", *_cells(of_group))

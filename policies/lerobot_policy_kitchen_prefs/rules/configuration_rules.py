@@ -54,7 +54,7 @@ class RulesConfig(PreTrainedConfig):
         """
         for key in NEEDS[self.rule]:
             if key not in (self.input_features or {}):
-                hint = " Use --env.track=privileged." if key == OBS_PREFERENCE else ""
+                hint = " Give --track or --env.track=privileged." if key == OBS_PREFERENCE else ""
                 raise ValueError(f"The rule {self.rule!r} needs {key!r}, which is not there.{hint}")
 
     @property

@@ -139,8 +139,8 @@ function trackTable(track, columns) {
   table.append(html("thead", {}, html("tr", {}, tick, ...headers)));
   const ranked = entries.filter(({ rank }) => rank !== null);
   const rest = entries.filter(({ rank }) => rank === null);
-  if (ranked.length) table.append(block("re-run", ranked, columns));
-  if (rest.length) table.append(block("replayed only", rest, columns));
+  if (ranked.length) table.append(block("re-run", "", ranked, columns));
+  if (rest.length) table.append(block("replayed only", ": no rank before a re-run", rest, columns));
   const title = `${track[0].toUpperCase()}${track.slice(1)} track`;
   return html(
     "section",
@@ -150,8 +150,8 @@ function trackTable(track, columns) {
   );
 }
 
-function block(title, entries, columns) {
-  const cell = html("th", { colspan: columns.length + 3, scope: "rowgroup" }, title);
+function block(title, remark, entries, columns) {
+  const cell = html("th", { colspan: columns.length + 3, scope: "rowgroup" }, title, remark);
   return html("tbody", { "data-block": title }, html("tr", { class: "block" }, cell),
     ...entries.map((entry) => rowOf(entry, columns)));
 }
