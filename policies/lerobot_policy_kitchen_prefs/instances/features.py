@@ -44,7 +44,7 @@ def shown(batch: dict[str, Tensor], key: str) -> Tensor:
         ValueError: If it does not show it.
     """
     if key not in batch:
-        track = " on the privileged track (--track or --env.track=privileged)" * (key == OBS_PREFERENCE)
+        track = " on the track --track=privileged (--env.track)" * (key == OBS_PREFERENCE)
         raise ValueError(
             f"The policy needs {key!r}, which the environment does not show; roll it out in an "
             f"environment of kitchen_prefs{track}."
