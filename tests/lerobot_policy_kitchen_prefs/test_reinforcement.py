@@ -17,8 +17,8 @@ from kitchen_prefs import instances
 from kitchen_prefs.checkpoints import read_config, read_policy
 from kitchen_prefs.cli import command_line
 from kitchen_prefs.demonstrations import demonstrate
-from kitchen_prefs.environment import LIMIT_FACTOR
 from kitchen_prefs.instances import CAPACITY, POSE
+from kitchen_prefs.play import LIMIT_FACTOR
 from kitchen_prefs.records import read_episodes
 from kitchen_prefs.reinforcement.checkpoints import (
     last_checkpoint,
