@@ -411,7 +411,8 @@ def test_a_terminal_shows_a_name_as_it_is(untouched_entry, name):
     with console.capture() as shown:
         console.print(*to_tables(Entry(about, "", untouched_entry.episodes), by="count"), sep="\n")
     titles = [line.strip() for line in shown.get().splitlines() if name in line]
-    assert titles == [name, f"{name}, by count"]
+    title = f"{name}: means, and their 95 % intervals"
+    assert titles == [title, f"{title}, by count"]
 
 
 @PATIENT
