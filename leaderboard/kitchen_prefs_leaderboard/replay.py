@@ -6,11 +6,9 @@ from pathlib import Path
 from kitchen_prefs import instances
 from kitchen_prefs.metrics import Episode
 from kitchen_prefs.play import Play
-from kitchen_prefs.sessions import make_session
+from kitchen_prefs.sessions import POSE_DECIMALS, make_session
 from kitchen_prefs_leaderboard.reading import read_lines
 from kitchen_prefs_leaderboard.submission import ACTIONS, FARTHEST, Line
-
-DECIMALS = 4  # a tenth of a millimetre, as in the data sets
 
 
 def replay_split(folder: Path, split: str) -> list[Episode]:
@@ -79,7 +77,7 @@ def write_line(episode: Episode) -> Line:
 
 def _written(action: Sequence[float], instance: int, play: Play) -> Sequence[float]:
     """An action as it is written, which chooses the instance that the action chose."""
-    rounded = [round(value, DECIMALS) for value in action]
+    rounded = [round(value, POSE_DECIMALS) for value in action]
     near = all(abs(value) <= FARTHEST for value in rounded)
     if near and play.choose(rounded)[0] == instance:
         return rounded

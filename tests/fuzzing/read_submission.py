@@ -16,6 +16,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import atheris
+from honest import ABOUT, EPISODE
 
 with atheris.instrument_imports(include=["kitchen_prefs_leaderboard"]):
     from kitchen_prefs_leaderboard.reading import read_description, read_lines
@@ -33,19 +34,6 @@ WORDS = [
     "NaN", "-Infinity", "1e999", "-0.0", "5e-324", "9" * 400, "[" * 250, r"{\"a\":" * 250,
     "true", "null", "[0,0,0,0,0,0,0]", r"\"session\":", r"\"actions\":", r"BZh9",
 ]  # fmt: skip
-ABOUT = {
-    "format": 1,
-    "name": "Honest",
-    "authors": ["A. Person"],
-    "link": "https://example.org/",
-    "track": "standard",
-    "policy": {"type": "by_hand", "parameters": 12, "checkpoint": "0" * 64},
-    "data_version": 1,
-    "fingerprints": {"dishwasher-seen-v1": "0" * 64},
-    "packages": {"kitchen_prefs": "0.1.0"},
-    "hardware": "none",
-    "training": "none",
-}
 
 
 def main() -> None:
@@ -78,12 +66,11 @@ def mutated(content: bytes, most: int, seed: int) -> bytes:
 @cache
 def well_formed() -> list[bytes]:
     """An input of each kind with which nothing is wrong."""
-    pose = [0.5, -0.25, 1.0, 1.0, 0.0, 0.0, 0.0]
-    episode = {"session": 0, "first": "0" * 64, "actions": [pose, pose], "last": "0" * 64}
+    about = ABOUT | {"fingerprints": {"dishwasher-seen-v1": "0" * 64}}
     sessions = range(get_split(SPLIT).sessions)
-    lines = "\n".join(json.dumps(episode | {"session": session}) for session in sessions).encode()
+    lines = "\n".join(json.dumps(EPISODE | {"session": session}) for session in sessions).encode()
     files = {
-        DESCRIPTION_ITSELF: json.dumps(ABOUT).encode(),
+        DESCRIPTION_ITSELF: json.dumps(about).encode(),
         LINES: lines,
         COMPRESSED: bz2.compress(lines),
     }

@@ -11,6 +11,7 @@ import unicodedata
 import warnings
 
 import pytest
+from fuzzing.honest import ABOUT, EPISODE, POSE
 from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 from rich.console import Console
@@ -34,21 +35,6 @@ from kitchen_prefs_leaderboard.submission import ACTIONS, DESCRIPTION, Line, Sub
 from kitchen_prefs_leaderboard.verification import read_verifications
 
 SEEN = ACTIONS["seen"]
-ABOUT = {
-    "format": 1,
-    "name": "Honest",
-    "authors": ["A. Person"],
-    "link": "https://example.org/",
-    "track": "standard",
-    "policy": {"type": "by_hand", "parameters": 12, "checkpoint": "0" * 64},
-    "data_version": 1,
-    "fingerprints": {},
-    "packages": {"kitchen_prefs": "0.1.0"},
-    "hardware": "none",
-    "training": "none",
-}
-POSE = [0.5, -0.25, 1.0, 1.0, 0.0, 0.0, 0.0]
-EPISODE = {"session": 0, "first": "0" * 64, "actions": [POSE, POSE], "last": "0" * 64}
 # Well-formed: the reader has nothing to say against it, only the kitchen has.
 EPISODES = {
     split: b"".join(
