@@ -15,8 +15,8 @@ from kitchen_prefs import load_dataset
 from kitchen_prefs.datasets.columns import FEATURES, FPS, columns_of
 from kitchen_prefs.datasets.names import content_of
 from kitchen_prefs.datasets.writing import write_dataset
-from kitchen_prefs.demonstrations import demonstrate
-from kitchen_prefs.sessions import make_session
+from kitchen_prefs.envs.demonstrations import demonstrate
+from kitchen_prefs.simulation.sessions import make_session
 
 EPISODES = 70  # dishwasher-val-v1
 BY_LEROBOT = 10  # episodes that LeRobot's writer gets: it takes a second for ten

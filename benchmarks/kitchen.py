@@ -6,11 +6,11 @@ import gymnasium
 import numpy as np
 
 from benchmarks.measuring import Result, rates
-from kitchen_prefs.environment import DishwasherLoading
-from kitchen_prefs.kitchen import Kitchen
+from kitchen_prefs.envs.environment import DishwasherLoading
+from kitchen_prefs.envs.observations import Observer
 from kitchen_prefs.metrics import Episode
-from kitchen_prefs.observations import Observer
-from kitchen_prefs.sessions import expert_run, make_session
+from kitchen_prefs.simulation.kitchen import Kitchen
+from kitchen_prefs.simulation.sessions import expert_trajectory, make_session
 from kitchen_prefs_leaderboard.replay import replay, write_line
 
 SESSIONS = range(0, 70, 5)
@@ -18,7 +18,7 @@ SESSIONS = range(0, 70, 5)
 
 def kitchen_decisions() -> Iterator[Result]:
     sessions = [make_session("seen", i) for i in SESSIONS]
-    decisions = [expert_run(session).decisions for session in sessions]
+    decisions = [expert_trajectory(session).decisions for session in sessions]
     total = sum(map(len, decisions))
     environment = DishwasherLoading("seen")
     actions = {i: list(_actions(environment, i)) for i in SESSIONS}

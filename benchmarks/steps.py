@@ -17,7 +17,7 @@ from torch.utils.data import DataLoader
 from torch.utils.flop_counter import FlopCounterMode
 
 from kitchen_prefs import load_dataset
-from kitchen_prefs.recipes import recipe_file
+from kitchen_prefs_experiments.recipes import recipe_file
 
 PARTS = ("data", "pairing", "forward", "backward", "optimiser")
 

@@ -12,5 +12,5 @@ __all__ = ["dataset_names", "load_dataset"]
 
 gymnasium.register(
     "kitchen_prefs/DishwasherLoading-v0",
-    entry_point="kitchen_prefs.environment:DishwasherLoading",
+    entry_point="kitchen_prefs.envs.environment:DishwasherLoading",
 )

@@ -11,12 +11,9 @@ from importlib.metadata import entry_points
 
 import typer
 
-from kitchen_prefs import evaluation
 from kitchen_prefs.datasets import commands as datasets
-from kitchen_prefs.quickstart import command as quickstart
-from kitchen_prefs.reinforcement import command as reinforcement
-from kitchen_prefs.reproduction import command as reproduction
-from kitchen_prefs.scene import commands as scene
+from kitchen_prefs.evaluation import commands as evaluation
+from kitchen_prefs.physics import commands as physics
 
 
 def main() -> None:
@@ -47,7 +44,7 @@ def command_line() -> typer.Typer:
         pretty_exceptions_enable=False,  # main says what went wrong
     )
     found = sorted(entry_points(group="kitchen_prefs.commands"), key=lambda entry: entry.name)
-    own = (quickstart, datasets, evaluation, reinforcement, reproduction, scene)
+    own = (datasets, evaluation, physics)
     for commands in (*(module.app for module in own), *(entry.load() for entry in found)):
         app.add_typer(commands)
     return app

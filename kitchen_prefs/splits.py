@@ -4,16 +4,16 @@ A split names the person of each session: 0..11 are those with the twelve prefer
 they are the two hundred others, whose preferences are drawn at random (see `sessions`).
 """
 
-import difflib
-from collections.abc import Iterable
 from dataclasses import dataclass
+
+from kitchen_prefs.utils.suggestions import suggest
 
 # A change that alters one byte of a data set or one session raises this version.
 DATA_VERSION = 1
 
-SEEN_PEOPLE = tuple(range(7))
-HELD_OUT_PEOPLE = tuple(range(7, 12))
-OTHER_PEOPLE = tuple(range(12, 212))
+SEEN_USERS = tuple(range(7))
+HELD_OUT_USERS = tuple(range(7, 12))
+OTHER_USERS = tuple(range(12, 212))
 
 
 @dataclass(frozen=True)
@@ -32,7 +32,7 @@ class Split:
     """
 
     name: str
-    people: tuple[int, ...]
+    users: tuple[int, ...]
     counts: tuple[int, ...]
     purpose: str
     serves_prompts: bool = False
@@ -42,15 +42,15 @@ class Split:
     @property
     def sessions(self) -> int:
         """How many sessions there are."""
-        return len(self.people)
+        return len(self.users)
 
     def count(self, index: int) -> int:
         """How many dishes per rack session `index` wants."""
         return self.counts[index % len(self.counts)]
 
 
-def _each(people: tuple[int, ...], sessions: int) -> tuple[int, ...]:
-    return tuple(person for person in people for _ in range(sessions))
+def _each(users: tuple[int, ...], sessions: int) -> tuple[int, ...]:
+    return tuple(user for user in users for _ in range(sessions))
 
 
 TRAINING_COUNTS = (6, 7)  # the paper's
@@ -59,26 +59,24 @@ OTHER_COUNTS = (3, 4, 5, 8, 9, 10)
 SPLITS = {
     split.name: split
     for split in (
-        Split("train", _each(SEEN_PEOPLE, 80), TRAINING_COUNTS, "training", serves_prompts=True),
-        Split("val", _each(SEEN_PEOPLE, 10), TRAINING_COUNTS, "choosing a checkpoint"),
-        Split("seen", _each(SEEN_PEOPLE, 10), TRAINING_COUNTS, "test"),
-        Split("unseen_preferences", _each(HELD_OUT_PEOPLE, 20), TRAINING_COUNTS, "test"),
-        Split("unseen_counts", _each(SEEN_PEOPLE, 30), OTHER_COUNTS, "test"),
-        Split("unseen_both", _each(HELD_OUT_PEOPLE, 30), OTHER_COUNTS, "test"),
-        Split("many_preferences", OTHER_PEOPLE, TRAINING_COUNTS, "test"),
-        Split(
-            "noisy", _each(SEEN_PEOPLE + HELD_OUT_PEOPLE, 5), TRAINING_COUNTS, "test", noisy=True
-        ),
+        Split("train", _each(SEEN_USERS, 80), TRAINING_COUNTS, "training", serves_prompts=True),
+        Split("val", _each(SEEN_USERS, 10), TRAINING_COUNTS, "choosing a checkpoint"),
+        Split("seen", _each(SEEN_USERS, 10), TRAINING_COUNTS, "test"),
+        Split("unseen_preferences", _each(HELD_OUT_USERS, 20), TRAINING_COUNTS, "test"),
+        Split("unseen_counts", _each(SEEN_USERS, 30), OTHER_COUNTS, "test"),
+        Split("unseen_both", _each(HELD_OUT_USERS, 30), OTHER_COUNTS, "test"),
+        Split("many_preferences", OTHER_USERS, TRAINING_COUNTS, "test"),
+        Split("noisy", _each(SEEN_USERS + HELD_OUT_USERS, 5), TRAINING_COUNTS, "test", noisy=True),
         Split(
             "prompts",
-            _each(HELD_OUT_PEOPLE, 80) + OTHER_PEOPLE,
+            _each(HELD_OUT_USERS, 80) + OTHER_USERS,
             TRAINING_COUNTS,
             "prompts of preferences that training does not see",
             serves_prompts=True,
         ),
         Split(
             "incomplete_prompts",
-            _each(SEEN_PEOPLE + HELD_OUT_PEOPLE, 5),
+            _each(SEEN_USERS + HELD_OUT_USERS, 5),
             TRAINING_COUNTS,
             "diagnosis: prompts that lack a category",
             incomplete=True,
@@ -104,10 +102,3 @@ def get_split(name: str) -> Split:
     if name not in SPLITS:
         raise ValueError(f"There is no split {name!r}. {suggest(name, SPLITS)}")
     return SPLITS[name]
-
-
-def suggest(name: str, known: Iterable[str]) -> str:
-    """A sentence that names the nearest of some known names, or all of them."""
-    names = list(known)
-    near = difflib.get_close_matches(name, names, n=1)
-    return f"Did you mean {near[0]!r}?" if near else f"There are: {', '.join(names)}."

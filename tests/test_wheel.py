@@ -8,7 +8,12 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[1]
-PACKAGES = {"kitchen_prefs", "lerobot_policy_kitchen_prefs", "kitchen_prefs_leaderboard"}
+PACKAGES = {
+    "kitchen_prefs",
+    "lerobot_policy_kitchen_prefs",
+    "kitchen_prefs_experiments",
+    "kitchen_prefs_leaderboard",
+}
 
 
 @pytest.fixture(scope="module")
@@ -30,8 +35,8 @@ def test_no_generic_name_is_installed(names):
 
 
 def test_data_and_recipes_are_installed(names):
-    assert "kitchen_prefs/data/placements.npz" in names
-    assert "kitchen_prefs/data/fingerprints.json" in names
+    assert "kitchen_prefs/simulation/placements.npz" in names
+    assert "kitchen_prefs/datasets/fingerprints.json" in names
     assert "kitchen_prefs/datasets/card.md" in names
-    assert "lerobot_policy_kitchen_prefs/recipes/ttp_quick.yaml" in names
+    assert "kitchen_prefs_experiments/recipes/ttp_quick.yaml" in names
     assert "kitchen_prefs_leaderboard/page/templates/page.html" in names

@@ -12,7 +12,7 @@ recording     fingerprints and cards of the published data sets
 commands      `kitchen-prefs datasets`
 """
 
-from kitchen_prefs.datasets.making import load_dataset, make_dataset
+from kitchen_prefs.datasets.loading import load_dataset, make_dataset
 from kitchen_prefs.datasets.names import dataset_names, dataset_root
 
 __all__ = ["dataset_names", "dataset_root", "load_dataset", "make_dataset"]

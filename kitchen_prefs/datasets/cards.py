@@ -11,7 +11,7 @@ import pyarrow.parquet as pq
 from kitchen_prefs import instances
 from kitchen_prefs.datasets.columns import FEATURES, FPS, read_columns
 from kitchen_prefs.datasets.names import Content
-from kitchen_prefs.observations import ENVIRONMENT_STATE, STATE
+from kitchen_prefs.envs.observations import ENVIRONMENT_STATE, STATE
 from kitchen_prefs.preferences import TWELVE
 from kitchen_prefs.splits import DATA_VERSION, SPLITS, TEST_SPLITS
 
@@ -36,7 +36,7 @@ def card(content: Content, manifest: dict, root: Path) -> str:
         fingerprint=manifest["fingerprint"],
         episodes=manifest["episodes"],
         frames=manifest["frames"],
-        people=_people(content),
+        preferences=_preferences(content),
         counts=_counts(content),
         storage=_storage(root),
         capacity=instances.CAPACITY,
@@ -49,8 +49,8 @@ def card(content: Content, manifest: dict, root: Path) -> str:
     )
 
 
-def _people(content: Content) -> str:
-    labels = {SPLITS[split].people[index] for split, index in content.sessions}
+def _preferences(content: Content) -> str:
+    labels = {SPLITS[split].users[index] for split, index in content.sessions}
     twelve = sorted(label + 1 for label in labels if label < len(TWELVE))
     others = len(labels) - len(twelve)
     numbers = ", ".join(map(str, twelve))

@@ -17,9 +17,9 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from kitchen_prefs.demonstrations import Demonstration
+from kitchen_prefs.envs.demonstrations import Demonstration
+from kitchen_prefs.envs.observations import ENVIRONMENT_STATE, STATE
 from kitchen_prefs.instances import CAPACITY, COLUMNS
-from kitchen_prefs.observations import ENVIRONMENT_STATE, STATE
 
 POSE_NAMES = ("x", "y", "z", "qw", "qx", "qy", "qz")
 FPS = 1  # a decision has no duration; with 1 a timestamp is the decision's number

@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from kitchen_prefs.datasets.columns import FEATURES
-from kitchen_prefs.datasets.making import make_dataset
+from kitchen_prefs.datasets.loading import make_dataset
 from kitchen_prefs.datasets.manifest import published_fingerprint, read_manifest
 from kitchen_prefs.datasets.names import content_of, dataset_names, dataset_root
 
@@ -89,7 +89,7 @@ def push(
 
     Example: kitchen-prefs datasets push dishwasher-val-v1 --repo-id=OWNER/dishwasher-val-v1
     """
-    from kitchen_prefs.datasets.pushing import push_dataset
+    from kitchen_prefs.datasets.hub_upload import push_dataset
 
     typer.echo(f"{content_of(name).name} is at {push_dataset(name, repo_id, private)}")
 
@@ -102,6 +102,6 @@ def record(
 
     Example: kitchen-prefs datasets record
     """
-    from kitchen_prefs.datasets.recording import record_published  # imports LeRobot: seconds
+    from kitchen_prefs.datasets.publishing import record_published  # imports LeRobot: seconds
 
     record_published(cards)

@@ -2,20 +2,19 @@
 
 `meta/kitchen_prefs.json` lies in each data set: its name, data version, content fingerprint, and
 the SHA-256 of each file, so that a half-written or damaged one is found when it is opened.
-`kitchen_prefs/data/fingerprints.json` holds the fingerprints of the published data sets.
+`kitchen_prefs/datasets/fingerprints.json` holds the fingerprints of the published data sets.
 """
 
 import hashlib
 import json
-from importlib.resources import files
 from pathlib import Path
 
 from kitchen_prefs.datasets.columns import fingerprint, read_columns, read_tasks
-from kitchen_prefs.files import write_json
 from kitchen_prefs.splits import DATA_VERSION
+from kitchen_prefs.utils.files import write_json
 
 MANIFEST = Path("meta") / "kitchen_prefs.json"
-FINGERPRINTS = Path(str(files("kitchen_prefs"))) / "data" / "fingerprints.json"
+FINGERPRINTS = Path(__file__).with_name("fingerprints.json")
 KINDS = {"data_version": int, "fingerprint": str, "episodes": int, "frames": int, "files": dict}
 
 

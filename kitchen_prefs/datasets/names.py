@@ -7,7 +7,8 @@ from pathlib import Path
 
 from huggingface_hub.constants import HF_HOME
 
-from kitchen_prefs.splits import DATA_VERSION, HELD_OUT_PEOPLE, SEEN_PEOPLE, SPLITS, suggest
+from kitchen_prefs.splits import DATA_VERSION, HELD_OUT_USERS, SEEN_USERS, SPLITS
+from kitchen_prefs.utils.suggestions import suggest
 
 NAMESPACE = "kitchen_prefs"
 
@@ -72,9 +73,9 @@ def content_of(name: str) -> Content:
             f"ask for {right!r}, or install the version that made the other."
         )
     if found["all"]:
-        held_out = _sessions("prompts", HELD_OUT_PEOPLE, 80)
+        held_out = _sessions("prompts", HELD_OUT_USERS, 80)
         purpose = "training of privileged baselines on all twelve preferences"
-        return Content(name, _sessions("train", SEEN_PEOPLE, 80) + held_out, purpose)
+        return Content(name, _sessions("train", SEEN_USERS, 80) + held_out, purpose)
     if found["split"]:
         split = SPLITS[found["split"]]
         return Content(name, tuple((split.name, i) for i in range(split.sessions)), split.purpose)
@@ -85,7 +86,7 @@ def content_of(name: str) -> Content:
         return Content(name, _sessions("prompts", (number - 1,), demonstrations), purpose)
     preferences = int(found["preferences"])
     purpose = f"training on {preferences} preferences, {demonstrations} demonstrations each"
-    sessions = _sessions("train", SEEN_PEOPLE[:preferences], demonstrations)
+    sessions = _sessions("train", SEEN_USERS[:preferences], demonstrations)
     return Content(name, sessions, purpose)
 
 
@@ -96,10 +97,10 @@ def dataset_root(name: str) -> Path:
     return home / NAMESPACE / name
 
 
-def _sessions(split: str, people: tuple[int, ...], most: int) -> tuple[tuple[str, int], ...]:
+def _sessions(split: str, users: tuple[int, ...], most: int) -> tuple[tuple[str, int], ...]:
     """The first sessions of some people, person by person."""
     chosen = []
-    for person in people:
-        sessions = [i for i, other in enumerate(SPLITS[split].people) if other == person]
+    for user in users:
+        sessions = [i for i, other in enumerate(SPLITS[split].users) if other == user]
         chosen += [(split, i) for i in sessions[:most]]
     return tuple(chosen)

@@ -17,9 +17,9 @@ from kitchen_prefs import instances
 from kitchen_prefs.datasets.columns import FEATURES, FPS, fingerprint, read_columns, read_tasks
 from kitchen_prefs.datasets.manifest import published_fingerprint, read_manifest
 from kitchen_prefs.datasets.names import Content, content_of, dataset_root
-from kitchen_prefs.environment import DishwasherLoading
+from kitchen_prefs.envs.environment import DishwasherLoading
 from kitchen_prefs.metrics import edit_similarity, packing_efficiency
-from kitchen_prefs.sessions import make_session
+from kitchen_prefs.simulation.sessions import make_session
 from kitchen_prefs.splits import SPLITS
 
 REPLAYED = 20  # episodes spread over the data set; a wrong kitchen or expert shows in any of them

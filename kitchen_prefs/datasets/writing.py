@@ -33,8 +33,8 @@ from kitchen_prefs.datasets.cards import card
 from kitchen_prefs.datasets.columns import FEATURES, FPS, ROBOT_TYPE, columns_of
 from kitchen_prefs.datasets.manifest import write_manifest
 from kitchen_prefs.datasets.names import Content
-from kitchen_prefs.demonstrations import demonstrate
-from kitchen_prefs.sessions import make_session
+from kitchen_prefs.envs.demonstrations import demonstrate
+from kitchen_prefs.simulation.sessions import make_session
 
 ALL_FEATURES = {**FEATURES, **DEFAULT_FEATURES}
 FIRST_FILE = {"chunk_index": 0, "file_index": 0}  # each data set is smaller than one file may be

@@ -11,8 +11,8 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-from kitchen_prefs.files import make_folder
-from kitchen_prefs_leaderboard.submission import NOT_SAID
+from kitchen_prefs.utils.files import make_folder
+from kitchen_prefs_leaderboard.submission_format import NOT_SAID
 
 app = typer.Typer(
     name="leaderboard",
@@ -76,22 +76,22 @@ def submit(
     --policy.path=outputs/ttp_quick/checkpoints/last/pretrained_model
     """
     make_folder(out.parent, "--out")
-    from kitchen_prefs_leaderboard import submitting
-    from kitchen_prefs_leaderboard.playing import load_player
+    from kitchen_prefs_leaderboard import submission_writing
+    from kitchen_prefs_leaderboard.policy_runs import load_player
 
-    submitting.check_replaceable(out)
+    submission_writing.check_replaceable(out)
     player = load_player(path, policy_type, context.args, track)
-    submission = submitting.describe(
+    submission = submission_writing.describe(
         name=name,
         authors=author,
         link=link,
         track=track,
-        policy=submitting.policy_of(player.actor),
+        policy=submission_writing.policy_of(player.loaded_policy),
         hardware=hardware,
-        training=training or (submitting.training_of(path) if path else NOT_SAID),
+        training=training or (submission_writing.training_of(path) if path else NOT_SAID),
     )
     played = player.play(out.with_name(f"{out.name}-episodes"), salt=0, jobs=jobs)
-    submitting.write_submission(submission, played, out)
+    submission_writing.write_submission(submission, played, out)
     typer.echo(f"The submission is {out}. `kitchen-prefs leaderboard score {out}` scores it.")
 
 
@@ -108,15 +108,15 @@ def score(
     kitchen-prefs leaderboard score outputs/my_ttp
     kitchen-prefs leaderboard score leaderboard/submissions/* --format=csv --by=count
     """
-    from kitchen_prefs_leaderboard import output
+    from kitchen_prefs_leaderboard import score_formats
     from kitchen_prefs_leaderboard.scoring import score_submissions
 
     entries = score_submissions(folders, jobs)
     if form is Form.TABLE:
         for entry in entries:
-            console.print(*output.to_tables(entry, by), sep="\n")
+            console.print(*score_formats.to_tables(entry, by), sep="\n")
         return
-    write = output.to_json if form is Form.JSON else output.to_csv
+    write = score_formats.to_json if form is Form.JSON else score_formats.to_csv
     typer.echo(write(entries, by), nl=False)
 
 
@@ -143,7 +143,7 @@ def verify(
     kitchen-prefs leaderboard verify leaderboard/submissions/ttp_plus --rerun
     --policy.path=policies/checkpoints/ttp_plus
     """
-    from kitchen_prefs_leaderboard import output, verification
+    from kitchen_prefs_leaderboard import score_formats, verification
     from kitchen_prefs_leaderboard.scoring import read_known, score_submissions
 
     if not rerun:
@@ -155,19 +155,19 @@ def verify(
         return
     make_folder(out, "--out")
     make_folder(verifications, "--verifications")
-    from kitchen_prefs_leaderboard.playing import load_player
-    from kitchen_prefs_leaderboard.submitting import policy_of
+    from kitchen_prefs_leaderboard.policy_runs import load_player
+    from kitchen_prefs_leaderboard.submission_writing import policy_of
 
     submission = read_known(folder)
     player = load_player(path, policy_type, context.args, submission.track)
-    verification.check_policy(submission, policy_of(player.actor))
+    verification.check_policy(submission, policy_of(player.loaded_policy))
     (entry,) = score_submissions([folder], jobs)
     kept = out / entry.digest[:12]
     salt = salt or verification.fresh_salt(kept)
     found = verification.run_again(entry, player, salt, kept, jobs)
     file = verification.write_verification(found, verifications)
-    console.print(output.to_comparison(found))
-    typer.echo(f"{output.to_verdict(found)}\nThe record is {file}.")
+    console.print(score_formats.to_comparison(found))
+    typer.echo(f"{score_formats.to_verdict(found)}\nThe record is {file}.")
     if not found.confirmed:
         raise typer.Exit(1)
 
@@ -217,7 +217,7 @@ def push(
     For example:
     kitchen-prefs leaderboard push outputs/my_ttp --repo-id=OWNER/NAME
     """
-    from kitchen_prefs_leaderboard.pushing import push_submission
+    from kitchen_prefs_leaderboard.hub_upload import push_submission
 
     address = push_submission(folder, repo_id, name or folder.resolve().name)
     typer.echo(f"The pull request is {address}.")
@@ -235,6 +235,6 @@ def push_page(
     For example:
     kitchen-prefs leaderboard push-page outputs/leaderboard.html --repo-id=OWNER/SPACE
     """
-    from kitchen_prefs_leaderboard import pushing
+    from kitchen_prefs_leaderboard import hub_upload
 
-    typer.echo(f"The page is shown at {pushing.push_page(file, repo_id)}.")
+    typer.echo(f"The page is shown at {hub_upload.push_page(file, repo_id)}.")

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from kitchen_prefs_leaderboard.scoring import MEAN, Entry, difference
-from kitchen_prefs_leaderboard.submission import TRACKS
+from kitchen_prefs_leaderboard.submission_format import TRACKS
 from kitchen_prefs_leaderboard.verification import Verification
 
 

@@ -4,11 +4,12 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from kitchen_prefs import instances
+from kitchen_prefs.envs.episode_simulator import EpisodeSimulator
 from kitchen_prefs.metrics import Episode
-from kitchen_prefs.play import Play
-from kitchen_prefs.sessions import POSE_DECIMALS, make_session
-from kitchen_prefs_leaderboard.reading import read_lines
-from kitchen_prefs_leaderboard.submission import ACTIONS, FARTHEST, Line
+from kitchen_prefs.simulation.counter_layout import POSE_DECIMALS
+from kitchen_prefs.simulation.sessions import make_session
+from kitchen_prefs_leaderboard.submission_format import ACTIONS, FARTHEST, Line
+from kitchen_prefs_leaderboard.submission_reading import read_lines
 
 
 def replay_split(folder: Path, split: str) -> list[Episode]:
@@ -36,20 +37,20 @@ def replay(split: str, line: Line, where: str) -> Episode:
         ValueError: If the session does not begin as the line says, if the actions end too early or
             too late, or if the last state is another one.
     """
-    play = Play(make_session(split, line.session))
-    if play.digest() != line.first:
+    simulator = EpisodeSimulator(make_session(split, line.session))
+    if simulator.digest() != line.first:
         raise ValueError(
             f"{where}: session {line.session} of {split} begins in another state than this."
         )
     for number, action in enumerate(line.actions, start=1):
-        if play.terminated or play.truncated:
+        if simulator.terminated or simulator.truncated:
             raise ValueError(f"{where}: the episode ends before action {number}.")
-        play.act(action)
-    if not (play.terminated or play.truncated):
+        simulator.act(action)
+    if not (simulator.terminated or simulator.truncated):
         raise ValueError(f"{where}: the episode goes on after the last action.")
-    if play.digest() != line.last:
+    if simulator.digest() != line.last:
         raise ValueError(f"{where}: the actions do not lead to the last state that it names.")
-    return play.episode()
+    return simulator.episode()
 
 
 def write_line(episode: Episode) -> Line:
@@ -61,28 +62,30 @@ def write_line(episode: Episode) -> Line:
     Args:
         episode: An episode of a published session.
     """
-    play = Play(make_session(episode.split, episode.session))
-    first = play.digest()
+    simulator = EpisodeSimulator(make_session(episode.split, episode.session))
+    first = simulator.digest()
     actions: list[Sequence[float]] = []
     for action, instance in zip(episode.actions, episode.decisions, strict=True):
-        actions.append(_written(action, instance, play))
-        play.decide(instance, actions[-1])
+        actions.append(_written(action, instance, simulator))
+        simulator.decide(instance, actions[-1])
     return Line(
         session=episode.session,
         first=first,
         actions=[(x, y, z, w, i, j, k) for x, y, z, w, i, j, k in actions],
-        last=play.digest(),
+        last=simulator.digest(),
     )
 
 
-def _written(action: Sequence[float], instance: int, play: Play) -> Sequence[float]:
+def _written(
+    action: Sequence[float], instance: int, simulator: EpisodeSimulator
+) -> Sequence[float]:
     """An action as it is written, which chooses the instance that the action chose."""
     rounded = [round(value, POSE_DECIMALS) for value in action]
     near = all(abs(value) <= FARTHEST for value in rounded)
-    if near and play.choose(rounded)[0] == instance:
+    if near and simulator.choose(rounded)[0] == instance:
         return rounded
-    row = play.seen.row_of(instance)
-    return [float(value) for value in play.seen.rows[row, instances.POSE]]
+    row = simulator.seen.row_of(instance)
+    return [float(value) for value in simulator.seen.rows[row, instances.POSE]]
 
 
 def to_jsonl(lines: Sequence[Line]) -> bytes:

@@ -16,15 +16,15 @@ from kitchen_prefs.metrics import (
     METRICS,
     Episode,
     Interval,
+    failure_modes,
     mean_of_splits,
     score,
-    shortcomings,
     summarise,
 )
 from kitchen_prefs.splits import DATA_VERSION, TEST_SPLITS
-from kitchen_prefs_leaderboard.reading import files_of, read_description, read_lines
 from kitchen_prefs_leaderboard.replay import replay_split
-from kitchen_prefs_leaderboard.submission import Submission
+from kitchen_prefs_leaderboard.submission_format import Submission
+from kitchen_prefs_leaderboard.submission_reading import files_of, read_description, read_lines
 
 MEAN = "mean"  # stands beside the splits' names: each split counts the same
 DIGITS = 4  # the bootstrap tells no more than three; a fourth keeps rounding out of them
@@ -56,10 +56,10 @@ class Entry:
         return {**of_splits, MEAN: mean}
 
     @cached_property
-    def shortcomings(self) -> dict[str, dict[str, int]]:
+    def failure_modes(self) -> dict[str, dict[str, int]]:
         """For each test split, in how many episodes each thing went wrong."""
         return {
-            split: _count(shortcomings(episode) for episode in episodes)
+            split: _count(failure_modes(episode) for episode in episodes)
             for split, episodes in self.episodes.items()
         }
 

@@ -13,12 +13,11 @@ from typing import TYPE_CHECKING, Annotated
 
 from pydantic import Field, ValidationError
 
-from kitchen_prefs import metrics
-from kitchen_prefs.environment import FRESH_SALTS
-from kitchen_prefs.files import write_json
-from kitchen_prefs.metrics import Episode, Interval, mean_of_splits
+from kitchen_prefs.envs.environment import FRESH_SALTS
+from kitchen_prefs.metrics import Episode, Interval, mean_of_splits, score
+from kitchen_prefs.utils.files import write_json
 from kitchen_prefs_leaderboard.scoring import MEAN, Entry, difference, rounded
-from kitchen_prefs_leaderboard.submission import (
+from kitchen_prefs_leaderboard.submission_format import (
     Hash,
     Name,
     Policy,
@@ -28,7 +27,7 @@ from kitchen_prefs_leaderboard.submission import (
 )
 
 if TYPE_CHECKING:
-    from kitchen_prefs_leaderboard.playing import Player  # brings torch
+    from kitchen_prefs_leaderboard.policy_runs import Player  # brings torch
 
 
 class Means(Strict):
@@ -163,14 +162,14 @@ def judge(
     pairs = [(mine[e.split, e.session], e) for episodes in rerun.values() for e in episodes]
     gain = difference(rerun, entry.episodes)
     replayed = entry.metrics[MEAN]["Score"]
-    anew = mean_of_splits(list(fresh.values()), metrics.score)
+    anew = mean_of_splits(list(fresh.values()), score)
     return Verification(
         digest=entry.digest,
         packages=installed_packages(),
         salt=salt,
         same=sum(one.decisions == other.decisions for one, other in pairs) / len(pairs),
         replayed=_means(replayed),
-        rerun=_means(mean_of_splits(list(rerun.values()), metrics.score)),
+        rerun=_means(mean_of_splits(list(rerun.values()), score)),
         fresh=_means(anew),
         repeats=gain.low <= 0 <= gain.high,
         generalises=replayed.mean - anew.mean

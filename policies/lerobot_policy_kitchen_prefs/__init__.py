@@ -3,7 +3,7 @@
 LeRobot imports this package because of its name; that registers the policies and the environment.
 """
 
-import kitchen_prefs.environment_config  # noqa: F401  registers --env.type=kitchen_prefs
+import kitchen_prefs.envs.lerobot_env  # noqa: F401  registers --env.type=kitchen_prefs
 from lerobot_policy_kitchen_prefs import gnn, rules, ttp
 
 __all__ = ["gnn", "rules", "ttp"]

@@ -19,8 +19,8 @@ import atheris
 from honest import ABOUT, EPISODE
 
 with atheris.instrument_imports(include=["kitchen_prefs_leaderboard"]):
-    from kitchen_prefs_leaderboard.reading import read_description, read_lines
-    from kitchen_prefs_leaderboard.submission import ACTIONS, DESCRIPTION, Line, Submission
+    from kitchen_prefs_leaderboard.submission_format import ACTIONS, DESCRIPTION, Line, Submission
+    from kitchen_prefs_leaderboard.submission_reading import read_description, read_lines
 
 from kitchen_prefs.splits import get_split
 

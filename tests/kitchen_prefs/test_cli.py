@@ -83,7 +83,7 @@ def test_a_home_that_cannot_be_written_ends_in_one_sentence(tmp_path):
 
 
 def test_record_keeps_fingerprints_and_cards(tmp_path, monkeypatch):
-    recording = "kitchen_prefs.datasets.recording"
+    recording = "kitchen_prefs.datasets.publishing"
     monkeypatch.setattr(f"{recording}.dataset_names", lambda: (SMALL,))
     monkeypatch.setattr(f"{recording}.FINGERPRINTS", tmp_path / "fingerprints.json")
     assert run("datasets", "record", str(tmp_path / "cards")).exit_code == 0

@@ -10,24 +10,24 @@ import pytest
 
 from kitchen_prefs import instances
 from kitchen_prefs.cli import main
-from kitchen_prefs.play import Play
-from kitchen_prefs.sessions import expert_run, make_session
+from kitchen_prefs.envs.episode_simulator import EpisodeSimulator
+from kitchen_prefs.simulation.sessions import expert_trajectory, make_session
 from kitchen_prefs.splits import SPLITS, TEST_SPLITS, get_split
 from kitchen_prefs_leaderboard.replay import to_jsonl, write_line
 from kitchen_prefs_leaderboard.scoring import Entry
-from kitchen_prefs_leaderboard.submission import ACTIONS, DESCRIPTION, Policy
-from kitchen_prefs_leaderboard.submitting import describe
+from kitchen_prefs_leaderboard.submission_format import ACTIONS, DESCRIPTION, Policy
+from kitchen_prefs_leaderboard.submission_writing import describe
 
 
 def played_by_the_expert(split, index):
     """The expert's episode of a session; where a grasp fails, it tries again."""
-    play = Play(make_session(split, index))
-    for instance in expert_run(play.session).decisions:
+    simulator = EpisodeSimulator(make_session(split, index))
+    for instance in expert_trajectory(simulator.session).decisions:
         refusal = "not yet"
         while refusal:
-            row = play.seen.row_of(instance)
-            refusal = play.decide(instance, play.seen.rows[row, instances.POSE])
-    return play.episode()
+            row = simulator.seen.row_of(instance)
+            refusal = simulator.decide(instance, simulator.seen.rows[row, instances.POSE])
+    return simulator.episode()
 
 
 def description(**about):

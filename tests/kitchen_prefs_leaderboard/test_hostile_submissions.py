@@ -16,22 +16,22 @@ from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 from rich.console import Console
 
-from kitchen_prefs.play import Play
-from kitchen_prefs.sessions import make_session
+from kitchen_prefs.envs.episode_simulator import EpisodeSimulator
+from kitchen_prefs.simulation.sessions import make_session
 from kitchen_prefs.splits import TEST_SPLITS, get_split
 from kitchen_prefs_leaderboard import scoring
-from kitchen_prefs_leaderboard.output import to_tables
 from kitchen_prefs_leaderboard.page.building import to_html
-from kitchen_prefs_leaderboard.reading import (
+from kitchen_prefs_leaderboard.replay import replay
+from kitchen_prefs_leaderboard.score_formats import to_tables
+from kitchen_prefs_leaderboard.scoring import Entry, read_known, score_submissions
+from kitchen_prefs_leaderboard.submission_format import ACTIONS, DESCRIPTION, Line, Submission
+from kitchen_prefs_leaderboard.submission_reading import (
     MOST_COMPRESSED,
     MOST_LINE,
     MOST_LINES,
     read_description,
     read_lines,
 )
-from kitchen_prefs_leaderboard.replay import replay
-from kitchen_prefs_leaderboard.scoring import Entry, read_known, score_submissions
-from kitchen_prefs_leaderboard.submission import ACTIONS, DESCRIPTION, Line, Submission
 from kitchen_prefs_leaderboard.verification import read_verifications
 
 SEEN = ACTIONS["seen"]
@@ -175,7 +175,7 @@ def test_whatever_the_compressed_file_is(shared, content):
 @given(st.lists(st.tuples(*[st.floats(-1000, 1000)] * 7), min_size=1, max_size=5))
 @example([(0.0,) * 7, (-0.0,) * 7, (5e-324,) * 7, (1e-200,) * 7, (1000.0,) * 7])
 def test_whatever_the_poses_are(actions):
-    first = Play(make_session("seen", 0)).digest()
+    first = EpisodeSimulator(make_session("seen", 0)).digest()
     line = Line(session=0, first=first, actions=actions, last="0" * 64)
     with warnings.catch_warnings():
         warnings.simplefilter("error")  # a warning would be a second line
@@ -335,7 +335,7 @@ def greedy(tmp_path_factory):
 READ_ALL = """
 import sys
 from pathlib import Path
-from kitchen_prefs_leaderboard.reading import read_description, read_lines
+from kitchen_prefs_leaderboard.submission_reading import read_description, read_lines
 
 for folder in map(Path, sys.argv[1:]):
     try:
@@ -386,7 +386,9 @@ def test_the_command_says_one_sentence(folder, name, content):
 @pytest.fixture
 def untouched_entry():
     """A submission with an episode of each split in which nothing was done."""
-    episodes = {split: [Play(make_session(split, 0)).episode()] for split in TEST_SPLITS}
+    episodes = {
+        split: [EpisodeSimulator(make_session(split, 0)).episode()] for split in TEST_SPLITS
+    }
     return Entry(Submission.model_validate(ABOUT), "0" * 64, episodes)
 
 

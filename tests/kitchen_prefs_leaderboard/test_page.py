@@ -9,9 +9,9 @@ from playwright.sync_api import sync_playwright
 from typer.testing import CliRunner
 
 from kitchen_prefs import instances
-from kitchen_prefs import kitchen as k
-from kitchen_prefs.play import Play
-from kitchen_prefs.sessions import make_session
+from kitchen_prefs.envs.episode_simulator import EpisodeSimulator
+from kitchen_prefs.simulation import kitchen as k
+from kitchen_prefs.simulation.sessions import make_session
 from kitchen_prefs.splits import TEST_SPLITS, get_split
 from kitchen_prefs_leaderboard import commands, scoring
 from kitchen_prefs_leaderboard.page.building import write_page
@@ -32,24 +32,24 @@ pytestmark = [
 
 def played_carelessly(split, index):
     """An episode that begins with a forbidden decision and puts all into the top rack."""
-    play = Play(make_session(split, index))
+    simulator = EpisodeSimulator(make_session(split, index))
 
     def decide(instance):
-        row = play.seen.row_of(instance)
-        return play.decide(instance, play.seen.rows[row, instances.POSE])
+        row = simulator.seen.row_of(instance)
+        return simulator.decide(instance, simulator.seen.rows[row, instances.POSE])
 
     for instance in (k.TOP_RACK, k.DOOR, k.TOP_RACK):
         decide(instance)
-    while len(counter := play.kitchen.counter) and not play.truncated:
+    while len(counter := simulator.kitchen.counter) and not simulator.truncated:
         decide(k.FIRST_DISH + int(counter[0]))
-        if play.kitchen.held is not None and not play.truncated:
-            category = int(play.kitchen.dishes.category[play.kitchen.held])
-            free = play.kitchen.free("top", category)
+        if simulator.kitchen.held is not None and not simulator.truncated:
+            category = int(simulator.kitchen.dishes.category[simulator.kitchen.held])
+            free = simulator.kitchen.free("top", category)
             decide(k.FIRST_PLACEMENT["top"] + int(free[0]) if len(free) else k.SINK)
     for instance in (k.TOP_RACK, k.DOOR):
-        if not play.truncated:
+        if not simulator.truncated:
             decide(instance)
-    return play.episode()
+    return simulator.episode()
 
 
 @pytest.fixture(scope="module")
@@ -289,7 +289,7 @@ def test_the_keyboard_plays(page):
 
 def test_a_shortcoming_opens_its_episodes(page, entries):
     page.locator("#reasons-entry").select_option(label="Careless (privileged)")
-    wrong = entries[1].shortcomings["seen"]["wrong rack"]
+    wrong = entries[1].failure_modes["seen"]["wrong rack"]
     page.get_by_role("button", name=f"{wrong} episodes of seen: wrong rack").click()
     assert page.locator("#player-session option").count() == wrong
     assert "wrong rack" in page.locator("#episode-facts").text_content()

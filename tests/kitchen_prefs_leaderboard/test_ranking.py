@@ -6,7 +6,7 @@ import pytest
 
 from kitchen_prefs_leaderboard.ranking import rank
 from kitchen_prefs_leaderboard.scoring import MEAN, difference, score_submissions
-from kitchen_prefs_leaderboard.submitting import write_submission
+from kitchen_prefs_leaderboard.submission_writing import write_submission
 from kitchen_prefs_leaderboard.verification import judge
 
 ALL = range(6)  # all sessions of a split that was cut short

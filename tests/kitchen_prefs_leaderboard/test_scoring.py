@@ -15,15 +15,15 @@ from hypothesis import strategies as st
 from rich.console import Console
 
 from kitchen_prefs import instances
+from kitchen_prefs.envs.episode_simulator import EpisodeSimulator
 from kitchen_prefs.metrics import METRICS, mean_of_splits, summarise
-from kitchen_prefs.play import Play
-from kitchen_prefs.sessions import make_session
+from kitchen_prefs.simulation.sessions import make_session
 from kitchen_prefs.splits import TEST_SPLITS, get_split
-from kitchen_prefs_leaderboard.output import to_csv, to_json, to_tables
 from kitchen_prefs_leaderboard.replay import replay, write_line
+from kitchen_prefs_leaderboard.score_formats import to_csv, to_json, to_tables
 from kitchen_prefs_leaderboard.scoring import score_submissions
-from kitchen_prefs_leaderboard.submission import Line
-from kitchen_prefs_leaderboard.submitting import write_submission
+from kitchen_prefs_leaderboard.submission_format import Line
+from kitchen_prefs_leaderboard.submission_writing import write_submission
 
 BY_HAND = Path(__file__).parents[2] / "leaderboard" / "examples" / "by_hand.py"
 MOST = 1_000_000  # bytes of a submission
@@ -31,13 +31,13 @@ MOST = 1_000_000  # bytes of a submission
 
 def played_at_random(split, index, seed, jitter=0.0):
     """An episode of whatever may be chosen, given with an error of some metres and quaternions."""
-    play = Play(make_session(split, index))
+    simulator = EpisodeSimulator(make_session(split, index))
     generator = np.random.default_rng(seed)
-    while not (play.terminated or play.truncated):
-        rows = play.seen.rows[instances.choosable(play.seen.rows)]
+    while not (simulator.terminated or simulator.truncated):
+        rows = simulator.seen.rows[instances.choosable(simulator.seen.rows)]
         pose = generator.choice(rows)[instances.POSE]
-        play.act(pose + generator.normal(0, jitter, pose.shape))
-    return play.episode()
+        simulator.act(pose + generator.normal(0, jitter, pose.shape))
+    return simulator.episode()
 
 
 @pytest.fixture(scope="module")
@@ -167,11 +167,11 @@ def test_what_is_written_of_an_episode_is_that_episode(split, index, seed, jitte
 
 
 def test_an_action_too_far_away_becomes_the_pose_that_it_chose(few_episodes):
-    play = Play(make_session("seen", 0))
-    while not (play.terminated or play.truncated):
-        play.act((5000.0, -5000.0, 0.0, 1.0, 0.0, 0.0, 0.0))
-    line = write_line(play.episode())
-    assert replay("seen", line, "here").decisions == play.episode().decisions
+    simulator = EpisodeSimulator(make_session("seen", 0))
+    while not (simulator.terminated or simulator.truncated):
+        simulator.act((5000.0, -5000.0, 0.0, 1.0, 0.0, 0.0, 0.0))
+    line = write_line(simulator.episode())
+    assert replay("seen", line, "here").decisions == simulator.episode().decisions
     assert max(abs(number) for action in line.actions for number in action) < 10
 
 
@@ -179,7 +179,7 @@ def test_an_action_whose_rounding_would_choose_another_becomes_its_pose(
     few_episodes,
 ):
     session = make_session("seen", 0)
-    start, actions = Play(session), few_episodes()["seen"][0].actions
+    start, actions = EpisodeSimulator(session), few_episodes()["seen"][0].actions
 
     def between(share):
         """A pose from the expert's first action, at 0, to its second, at 1."""
@@ -194,11 +194,11 @@ def test_an_action_whose_rounding_would_choose_another_becomes_its_pose(
             second = middle
     kept = []
     for share in (first, second):
-        play = Play(session)
-        while not (play.terminated or play.truncated):
-            play.act(between(share))
-        line = write_line(play.episode())
-        assert replay("seen", line, "here").decisions == play.episode().decisions
+        simulator = EpisodeSimulator(session)
+        while not (simulator.terminated or simulator.truncated):
+            simulator.act(between(share))
+        line = write_line(simulator.episode())
+        assert replay("seen", line, "here").decisions == simulator.episode().decisions
         rounded = tuple(round(number, 4) for number in between(share))
         kept.append(line.actions[0] == rounded)
     assert sorted(kept) == [False, True]  # both are rounded to one pose, which chooses as one does

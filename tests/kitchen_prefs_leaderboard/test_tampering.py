@@ -104,9 +104,7 @@ def test_a_forbidden_decision_that_is_hidden(submission):
     file = submission / "noisy.jsonl.bz2"
     lines = bz2.decompress(file.read_bytes()).splitlines()
     episodes = replay_split(submission, "noisy")
-    number, failed = next(
-        (e.session, e.forbidden.index(True)) for e in episodes if any(e.forbidden)
-    )
+    number, failed = next((e.session, e.refused.index(True)) for e in episodes if any(e.refused))
     actions = json.loads(lines[number])["actions"]
     lines[number] = edited(lines[number], actions=actions[:failed] + actions[failed + 1 :])
     file.write_bytes(bz2.compress(b"\n".join(lines) + b"\n"))

@@ -4,8 +4,8 @@ import pytest
 
 from kitchen_prefs_leaderboard.ranking import rank
 from kitchen_prefs_leaderboard.scoring import score_submissions
-from kitchen_prefs_leaderboard.submission import Policy
-from kitchen_prefs_leaderboard.submitting import write_submission
+from kitchen_prefs_leaderboard.submission_format import Policy
+from kitchen_prefs_leaderboard.submission_writing import write_submission
 from kitchen_prefs_leaderboard.verification import (
     check_policy,
     judge,

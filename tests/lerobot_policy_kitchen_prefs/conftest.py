@@ -4,14 +4,14 @@ import numpy as np
 import pytest
 import torch
 
-from kitchen_prefs.demonstrations import demonstrate, prompt_of
+from kitchen_prefs.envs.demonstrations import demonstrate, prompt_of
 from kitchen_prefs.instances import IS_OBJECT, IS_PLACE
-from kitchen_prefs.sessions import make_session
-from lerobot_policy_kitchen_prefs.instances.categories import Categories
-from lerobot_policy_kitchen_prefs.instances.demonstrations import PLACE, Demonstrations
-from lerobot_policy_kitchen_prefs.instances.sets import chosen_rows
-from lerobot_policy_kitchen_prefs.ttp.pairing import make_pairs
-from lerobot_policy_kitchen_prefs.ttp.stands import Stands
+from kitchen_prefs.simulation.sessions import make_session
+from lerobot_policy_kitchen_prefs.common.categories import Categories
+from lerobot_policy_kitchen_prefs.common.demonstration_store import PLACE, DemonstrationStore
+from lerobot_policy_kitchen_prefs.common.instance_sets import chosen_rows
+from lerobot_policy_kitchen_prefs.ttp.prompt_pairing import make_pairs
+from lerobot_policy_kitchen_prefs.ttp.rack_poses import RackPoses
 
 
 @pytest.fixture(scope="session")
@@ -27,7 +27,7 @@ def demonstrations(sessions):
     lengths = np.array([len(r) for r in rows])
     rows = np.concatenate(rows)
     places = np.unique(rows[rows[:, IS_PLACE] > 0][:, PLACE], axis=0)
-    return Demonstrations(rows, lengths, labels, places)
+    return DemonstrationStore(rows, lengths, labels, places)
 
 
 @pytest.fixture(scope="session")
@@ -37,7 +37,7 @@ def categories(demonstrations):
 
 @pytest.fixture(scope="session")
 def stands(demonstrations, categories):
-    return Stands.of(demonstrations, categories)
+    return RackPoses.of(demonstrations, categories)
 
 
 @pytest.fixture(scope="session")

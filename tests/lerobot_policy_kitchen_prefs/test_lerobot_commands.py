@@ -13,8 +13,8 @@ import yaml
 from safetensors.torch import load_file
 
 from kitchen_prefs.datasets import make_dataset
-from kitchen_prefs.recipes import recipe_file
-from kitchen_prefs.records import read_episodes
+from kitchen_prefs.evaluation.episode_files import read_episodes
+from kitchen_prefs_experiments.recipes import recipe_file
 
 DATASET = "dishwasher-train-p2-d3-v1"
 TRAIN = "lerobot.scripts.lerobot_train"

@@ -13,10 +13,10 @@ from pathlib import Path
 from string import Template
 from typing import Any
 
-from kitchen_prefs.files import whole_file
 from kitchen_prefs.metrics import METRICS, Episode, Interval, packing_efficiency, summarise
 from kitchen_prefs.splits import DATA_VERSION, TEST_SPLITS, get_split
-from kitchen_prefs_leaderboard.page.drawing import (
+from kitchen_prefs.utils.files import atomic_file
+from kitchen_prefs_leaderboard.page.page_data import (
     episode_data,
     layout_data,
     preferences_in_words,
@@ -48,7 +48,7 @@ def write_page(tables: Mapping[str, Sequence[Row]], out: Path) -> None:
         out: The file.
     """
     html = to_html(page_data(tables))
-    with whole_file(out) as beside:
+    with atomic_file(out) as beside:
         beside.write_text(html, encoding="utf-8")
 
 
@@ -61,7 +61,7 @@ def page_data(tables: Mapping[str, Sequence[Row]]) -> dict[str, Any]:
         "mean": MEAN,
         "metrics": list(METRICS),
         "splits": {split: get_split(split).sessions for split in TEST_SPLITS},
-        "reasons": list(rows[0].entry.shortcomings[TEST_SPLITS[0]]),
+        "reasons": list(rows[0].entry.failure_modes[TEST_SPLITS[0]]),
         "entries": [_entry_data(row) for row in rows],
         "layout": layout_data(),
         "preferences": preferences_in_words(sessions),
@@ -97,7 +97,7 @@ def _entry_data(row: Row) -> dict[str, Any]:
             name: _by_count([episode for split in splits for episode in entry.episodes[split]])
             for name, splits in BY_COUNT.items()
         },
-        "shortcomings": {split: list(of.values()) for split, of in entry.shortcomings.items()},
+        "shortcomings": {split: list(of.values()) for split, of in entry.failure_modes.items()},
         "episodes": {
             split: [episode_data(episode) for episode in episodes]
             for split, episodes in entry.episodes.items()

@@ -5,9 +5,9 @@ from dataclasses import dataclass, field
 from lerobot.configs import FeatureType, NormalizationMode, PolicyFeature, PreTrainedConfig
 from lerobot.optim import AdamConfig
 
-from kitchen_prefs.environment_config import OBS_PREFERENCE
+from kitchen_prefs.envs.lerobot_env import OBS_PREFERENCE
 
-from ..instances.features import check_sets_and_poses
+from ..common.lerobot_features import check_sets_and_poses
 
 
 @PreTrainedConfig.register_subclass("gnn")

@@ -13,18 +13,18 @@ from lerobot.policies import PreTrainedPolicy
 from lerobot.utils.constants import ACTION
 from torch import Tensor, nn
 
-from kitchen_prefs.environment_config import OBS_INSTANCES, OBS_PREFERENCE
+from kitchen_prefs.envs.lerobot_env import OBS_INSTANCES, OBS_PREFERENCE
 from kitchen_prefs.instances import POSE
 from kitchen_prefs.preferences import TWELVE
 
-from ..instances.categories import Categories
-from ..instances.demonstrations import Demonstrations
-from ..instances.failures import Failures, invent_failures
-from ..instances.features import shown
-from ..instances.recognition import Recognition
-from ..instances.sets import accuracies, chosen_rows, is_place_decision
+from ..common.categories import Categories
+from ..common.demonstration_store import DemonstrationStore
+from ..common.denoising import Denoiser
+from ..common.failed_choices import FailedChoices, synthesise_failures
+from ..common.instance_sets import accuracies, chosen_rows, is_place_decision
+from ..common.lerobot_features import shown
 from .configuration_gnn import GNNConfig
-from .network import GNNetwork, Judgement
+from .network import GNNetwork, RowScores
 
 
 class GNNPolicy(PreTrainedPolicy):
@@ -52,10 +52,10 @@ class GNNPolicy(PreTrainedPolicy):
         config.validate_features()
         self.config: GNNConfig = config
         self.network = GNNetwork(config)
-        self.recognition = Recognition() if config.recognise else None
+        self.recognition = Denoiser() if config.recognise else None
         self.labels: Tensor | None = None  # (E,), of each episode of the data set
         if dataset_meta is not None:
-            demonstrations = Demonstrations.read(dataset_meta, chosen_only=True)
+            demonstrations = DemonstrationStore.read(dataset_meta, chosen_only=True)
             self.labels = _labels_of(demonstrations, dataset_meta.repo_id)
             self.categories = Categories.of(demonstrations)
             if self.recognition:
@@ -93,7 +93,7 @@ class GNNPolicy(PreTrainedPolicy):
         if self.training and self.config.failures:
             # The draws depend on the batch alone, so that a resumed run repeats an unbroken one.
             generator = np.random.default_rng(batch["index"].cpu().numpy())
-            failed = invent_failures(sets, targets, self.categories, generator)
+            failed = synthesise_failures(sets, targets, self.categories, generator)
         scores = self.network(sets, failed, labels).scores  # (B, N)
         correct = scores.argmax(dim=1) == targets
         return F.cross_entropy(scores, targets), accuracies(correct, is_place_decision(sets))
@@ -102,7 +102,7 @@ class GNNPolicy(PreTrainedPolicy):
 
     def reset(self) -> None:
         """Forget the past: other episodes begin."""
-        self._failures = Failures()
+        self._failed_choices = FailedChoices()
 
     @torch.no_grad()
     def select_action(self, batch: dict[str, Tensor], **_: Any) -> Tensor:
@@ -120,10 +120,10 @@ class GNNPolicy(PreTrainedPolicy):
         """
         self.eval()
         observed, sets = shown(batch, OBS_INSTANCES), self._recognise(batch)  # (B, N, 13) each
-        scores = self.judge(batch, self._failures.find(sets)).scores  # (B, N)
+        scores = self.score_rows(batch, self._failed_choices.find(sets)).scores  # (B, N)
         choices = draw(scores) if self.config.sample else scores.argmax(dim=1)  # (B,)
         environments = torch.arange(len(sets), device=sets.device)
-        self._failures.remember(sets[environments, choices])
+        self._failed_choices.remember(sets[environments, choices])
         return observed[environments, choices][:, POSE]
 
     def predict_action_chunk(self, batch: dict[str, Tensor], **_: Any) -> Tensor:
@@ -137,7 +137,7 @@ class GNNPolicy(PreTrainedPolicy):
         """The size d of a set's summary."""
         return self.config.dim
 
-    def judge(self, batch: dict[str, Tensor], failed: Tensor) -> Judgement:
+    def score_rows(self, batch: dict[str, Tensor], failed: Tensor) -> RowScores:
         """Judge the rows of what environments show.
 
         Args:
@@ -164,7 +164,7 @@ def draw(scores: Tensor) -> Tensor:
     return scores.softmax(dim=1).multinomial(1)[:, 0]
 
 
-def _labels_of(demonstrations: Demonstrations, name: str) -> Tensor:
+def _labels_of(demonstrations: DemonstrationStore, name: str) -> Tensor:
     """The preference's label of each episode, (E,) int64."""
     labels = torch.from_numpy(demonstrations.preference)
     if (labels >= len(TWELVE)).any():

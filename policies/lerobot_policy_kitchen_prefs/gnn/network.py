@@ -8,20 +8,20 @@ from torch.nn import functional as F
 from torch_geometric.nn import DenseGATConv
 from torch_geometric.nn.aggr import AttentionalAggregation, MeanAggregation
 
-from kitchen_prefs.environment import MAX_EPISODE_STEPS
+from kitchen_prefs.envs.environment import MAX_EPISODE_STEPS
 from kitchen_prefs.instances import DECISION, EXTENTS, IS_OBJECT, POSE, POSITION, QUATERNION
 from kitchen_prefs.preferences import TWELVE
 
-from ..instances.clashes import Clashes, left_to_attention
-from ..instances.failures import FailedRows, lowered
-from ..instances.sets import choosable, is_real, of_like_length
-from ..instances.waves import (
+from ..common.collision_model import CollisionModel, attended_rows
+from ..common.failed_choices import FailedRows, lowered
+from ..common.fourier_features import (
     EXTENTS_RANGE,
     FREQUENCIES,
     POSITION_RANGE,
     QUATERNION_RANGE,
     FourierFeatures,
 )
+from ..common.instance_sets import choosable, is_real, length_buckets
 from .configuration_gnn import GNNConfig
 
 NUMBERS = [*range(EXTENTS.start, POSE.stop), IS_OBJECT]  # with the time the paper's 12 attributes
@@ -29,7 +29,7 @@ WAVES = (POSE.stop - EXTENTS.start) * 2 * FREQUENCIES  # of extents, position an
 NEVER = -1e8  # the score of a row that may not be chosen: its probability is 0, its gradient finite
 
 
-class Judgement(NamedTuple):
+class RowScores(NamedTuple):
     """What the network makes of B sets.
 
     Attributes:
@@ -58,9 +58,9 @@ class GNNetwork(nn.Module):
         )
         self.readout = Pointer(config.dim) if points else LinearReadout(config.dim)
         self.failures = FailedRows(config.dim) if config.failures else None
-        self.clashes = Clashes() if config.clashes else None
+        self.clashes = CollisionModel() if config.clashes else None
 
-    def forward(self, sets: Tensor, failed: Tensor, labels: Tensor) -> Judgement:
+    def forward(self, sets: Tensor, failed: Tensor, labels: Tensor) -> RowScores:
         """Judge the rows of sets.
 
         Args:
@@ -73,14 +73,14 @@ class GNNetwork(nn.Module):
         """
         scores = sets.new_full(sets.shape[:2], NEVER)
         summary = sets.new_zeros(len(sets), self.dim)
-        for part in of_like_length(sets):
+        for part in length_buckets(sets):
             n = int(is_real(sets[part]).any(dim=0).nonzero().max()) + 1  # the rest is padding
-            judgement = self._judge(sets[part, :n], failed[part, :n], labels[part])
-            scores[part, :n], summary[part] = judgement
-        return Judgement(scores, summary)
+            row_scores = self._score_rows(sets[part, :n], failed[part, :n], labels[part])
+            scores[part, :n], summary[part] = row_scores
+        return RowScores(scores, summary)
 
-    def _judge(self, sets: Tensor, failed: Tensor, labels: Tensor) -> Judgement:
-        is_node = left_to_attention(sets) if self.clashes else is_real(sets)  # (B, N)
+    def _score_rows(self, sets: Tensor, failed: Tensor, labels: Tensor) -> RowScores:
+        is_node = attended_rows(sets) if self.clashes else is_real(sets)  # (B, N)
         nodes = self.inputs(sets, one_hot(labels))  # (B, N, d)
         if self.failures:
             nodes = self.failures.mark(nodes, failed)
@@ -96,7 +96,7 @@ class GNNetwork(nn.Module):
             scores = free + lowered(scores, 1 - free.exp(), sets)
         if self.failures:
             scores = lowered(scores, self.failures.shares(nodes, failed), sets)
-        return Judgement(scores.masked_fill(~choosable(sets), NEVER), summary)
+        return RowScores(scores.masked_fill(~choosable(sets), NEVER), summary)
 
 
 def one_hot(labels: Tensor) -> Tensor:

@@ -5,8 +5,8 @@ from dataclasses import dataclass, field
 from lerobot.configs import NormalizationMode, PreTrainedConfig
 from lerobot.optim import AdamWConfig, OptimizerConfig
 
-from kitchen_prefs.environment_config import OBS_INSTANCES, OBS_PREFERENCE, OBS_PROMPT
-from kitchen_prefs.splits import suggest
+from kitchen_prefs.envs.lerobot_env import OBS_INSTANCES, OBS_PREFERENCE, OBS_PROMPT
+from kitchen_prefs.utils.suggestions import suggest
 
 NEEDS = {
     "random": (OBS_INSTANCES,),

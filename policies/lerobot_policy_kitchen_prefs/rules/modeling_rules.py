@@ -10,16 +10,16 @@ from lerobot.policies import PreTrainedPolicy
 from torch import Tensor
 
 from kitchen_prefs import instances
-from kitchen_prefs.environment_config import OBS_INSTANCES, OBS_PREFERENCE, OBS_PROMPT
-from kitchen_prefs.expert import choose
+from kitchen_prefs.envs.lerobot_env import OBS_INSTANCES, OBS_PREFERENCE, OBS_PROMPT
 from kitchen_prefs.preferences import SEEN, Preference
-from kitchen_prefs.sessions import preference_with
+from kitchen_prefs.simulation.expert import choose
+from kitchen_prefs.simulation.sessions import preference_with
 from lerobot_policy_kitchen_prefs.rules.configuration_rules import RulesConfig
-from lerobot_policy_kitchen_prefs.rules.reading import (
+from lerobot_policy_kitchen_prefs.rules.observed_view import Memory, Sight
+from lerobot_policy_kitchen_prefs.rules.preference_inference import (
     nearest_training_preference,
     symbolic_preference,
 )
-from lerobot_policy_kitchen_prefs.rules.sight import Memory, Sight
 
 
 class RulesPolicy(PreTrainedPolicy):

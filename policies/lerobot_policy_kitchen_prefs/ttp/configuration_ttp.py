@@ -7,7 +7,7 @@ from lerobot.optim import SGDConfig
 
 from kitchen_prefs.instances import DECISION, EXTENTS, POSE
 
-from ..instances.features import check_sets_and_poses
+from ..common.lerobot_features import check_sets_and_poses
 from .scheduler import ExponentialDecaySchedulerConfig
 
 # The columns of each attribute.

@@ -9,11 +9,11 @@ import numpy as np
 import torch
 from torch import Tensor, nn
 
+from kitchen_prefs.envs.observations import DOOR_ROWS, RACK_ROWS
+from kitchen_prefs.envs.observations import EXTENTS as DISH_EXTENTS
 from kitchen_prefs.instances import DECISION, EXTENTS, IS_OBJECT, IS_PLACE, POSITION, QUATERNION
-from kitchen_prefs.observations import DOOR_ROWS, RACK_ROWS
-from kitchen_prefs.observations import EXTENTS as DISH_EXTENTS
 
-from ..instances.waves import (
+from ..common.fourier_features import (
     EXTENTS_RANGE,
     FREQUENCIES,
     POSITION_RANGE,

@@ -10,24 +10,30 @@ from lerobot.policies import PreTrainedPolicy
 from lerobot.utils.constants import ACTION
 from torch import Tensor, nn
 
-from kitchen_prefs.environment_config import OBS_INSTANCES, OBS_PROMPT
+from kitchen_prefs.envs.lerobot_env import OBS_INSTANCES, OBS_PROMPT
 from kitchen_prefs.instances import POSE, PROMPT_CAPACITY
 
-from ..instances.categories import Categories
-from ..instances.demonstrations import Demonstrations
-from ..instances.failures import Failures, invent_failures
-from ..instances.features import shown
-from ..instances.recognition import Recognition
-from ..instances.sets import accuracies, choosable, chosen_rows, is_place_decision, of_like_length
+from ..common.categories import Categories
+from ..common.demonstration_store import DemonstrationStore
+from ..common.denoising import Denoiser
+from ..common.failed_choices import FailedChoices, synthesise_failures
+from ..common.instance_sets import (
+    accuracies,
+    choosable,
+    chosen_rows,
+    is_place_decision,
+    length_buckets,
+)
+from ..common.lerobot_features import shown
 from .attention import Tokens
 from .configuration_ttp import TTPConfig
-from .history import History, objects_of
+from .context_history import History, objects_of
 from .network import TTPNetwork
-from .pairing import Pairs, make_pairs
-from .prompts import tokens_of_prompts
+from .prompt_pairing import Pairs, make_pairs
+from .prompt_tokens import tokens_of_prompts
+from .rack_poses import RackPoses
 from .relabelling import relabel
 from .situations import Situations
-from .stands import Stands
 
 
 class TTPPolicy(PreTrainedPolicy):
@@ -54,13 +60,13 @@ class TTPPolicy(PreTrainedPolicy):
         config.validate_features()
         self.config: TTPConfig = config
         self.network = TTPNetwork(config)
-        self.recognition = Recognition() if config.recognise else None
-        self.demonstrations: Demonstrations | None = None
+        self.recognition = Denoiser() if config.recognise else None
+        self.demonstrations: DemonstrationStore | None = None
         if dataset_meta is not None:
             chosen_only = config.prompt_tokens == "chosen"
-            self.demonstrations = Demonstrations.read(dataset_meta, chosen_only)
+            self.demonstrations = DemonstrationStore.read(dataset_meta, chosen_only)
             self.categories = Categories.of(self.demonstrations)
-            self.stands = Stands.of(self.demonstrations, self.categories)
+            self.stands = RackPoses.of(self.demonstrations, self.categories)
             if self.recognition:
                 self.recognition.remember(self.demonstrations)
         self.reset()
@@ -89,7 +95,7 @@ class TTPPolicy(PreTrainedPolicy):
         is_place = is_place_decision(pairs.sets)  # (S,)
         losses = pairs.sets.new_zeros(len(is_place))  # (S,)
         correct = torch.zeros_like(is_place)  # (S,)
-        for part in of_like_length(pairs.sets):
+        for part in length_buckets(pairs.sets):
             targets = pairs.targets[part]
             scores = self._score(situations.select(part), preference, pairs.prompt_of[part])
             losses[part] = F.cross_entropy(scores, targets, reduction="none")
@@ -128,7 +134,7 @@ class TTPPolicy(PreTrainedPolicy):
         if self.training and self.config.relabel:
             pairs = relabel(pairs, self.categories, self.stands, generator)
         if self.training and self.config.failures:
-            failed = invent_failures(pairs.sets, pairs.targets, self.categories, generator)
+            failed = synthesise_failures(pairs.sets, pairs.targets, self.categories, generator)
         return pairs, Situations(pairs.sets, failed, history[pairs.sample])
 
     # Acting ----------------------------------------------------------------------------------
@@ -136,7 +142,7 @@ class TTPPolicy(PreTrainedPolicy):
     def reset(self) -> None:
         """Forget the prompt and the past: other episodes begin."""
         self._preference: Tokens | None = None
-        self._failures = Failures()
+        self._failed_choices = FailedChoices()
         self._history = History(self.config.context_history)
 
     @torch.no_grad()
@@ -159,15 +165,15 @@ class TTPPolicy(PreTrainedPolicy):
         observed = shown(batch, OBS_INSTANCES)  # (B, N, 13)
         sets = self.recognition(observed) if self.recognition else observed
         if self._preference is None:
-            self._preference = self._encode(one_by_one(shown(batch, OBS_PROMPT)))
+            self._preference = self._encode(split_prompts(shown(batch, OBS_PROMPT)))
         prompt_of = torch.arange(len(self._preference.features), device=sets.device)
         environments = torch.arange(len(sets), device=sets.device)
         asked = environments.repeat_interleave(len(prompt_of) // len(sets))  # (B V,)
-        situations = Situations(sets, self._failures.find(sets), self._history.recall(sets))
+        situations = Situations(sets, self._failed_choices.find(sets), self._history.recall(sets))
         scores = self._score(situations.select(asked), self._preference, prompt_of)  # (B V, M)
         opinions = scores.log_softmax(dim=1).unflatten(0, (len(sets), -1))  # (B, V, M)
         choices = opinions.mean(dim=1).argmax(dim=1)  # (B,)
-        self._failures.remember(sets[environments, choices])
+        self._failed_choices.remember(sets[environments, choices])
         return observed[environments, choices][:, POSE]
 
     def predict_action_chunk(self, batch: dict[str, Tensor], **_: Any) -> Tensor:
@@ -197,7 +203,7 @@ def _now_and_before(batch: dict[str, Tensor]) -> tuple[Tensor, Tensor]:
     return sets[:, -1], objects_of(sets[:, :-1] * is_there[..., None, None])
 
 
-def one_by_one(prompts: Tensor) -> Tensor:
+def split_prompts(prompts: Tensor) -> Tensor:
     """Take prompts of V demonstrations each apart, (B, V P, 14) -> (B V, P, 14).
 
     Raises:

@@ -6,9 +6,9 @@ from torch import Tensor, nn
 
 from kitchen_prefs.instances import COLUMNS, DECISION, EXTENTS, IS_OBJECT, POSITION
 
-from ..instances.clashes import Clashes, left_to_attention
-from ..instances.failures import FailedRows, lowered
-from ..instances.sets import indices_of, is_real, take
+from ..common.collision_model import CollisionModel, attended_rows
+from ..common.failed_choices import FailedRows, lowered
+from ..common.instance_sets import indices_of, is_real, take
 from .attention import Tokens
 from .configuration_ttp import ATTRIBUTES, TTPConfig
 from .encoders import InstanceEncoder
@@ -36,7 +36,7 @@ class TTPNetwork(nn.Module):
         self.decoder_norm = final_norm(config)
         self.pointer = make_pointer(config)
         self.failures = FailedRows(config.dim) if config.failures else None
-        self.clashes = Clashes() if config.clashes else None
+        self.clashes = CollisionModel() if config.clashes else None
 
     def encode(self, prompts: Tensor, mask: Tensor) -> Tokens:
         """psi: encode prompts.
@@ -70,7 +70,7 @@ class TTPNetwork(nn.Module):
         rows = torch.cat([situations.sets, situations.history], dim=1)  # (B, N + H, 13)
         act = rows.new_zeros(len(rows), 1, rows.shape[-1])
         shown = hide(torch.cat([rows, act], dim=1), self.hidden_of_situations)
-        seen = left_to_attention(rows) if self.clashes else is_real(rows)  # (B, N + H)
+        seen = attended_rows(rows) if self.clashes else is_real(rows)  # (B, N + H)
         inputs = tokens = self._embed(shown, F.pad(seen, (0, 1), value=True))
         count = situations.sets.shape[1]
         if self.failures:

@@ -19,19 +19,19 @@ import torch
 from torch import Tensor
 
 from kitchen_prefs.instances import EXTENTS, IS_OBJECT, POSE, POSITION
-from kitchen_prefs.scene.layout import COUNTER_HEIGHT
+from kitchen_prefs.simulation.layout import COUNTER_HEIGHT
 
-from ..instances.categories import TOLERANCE, Categories
-from ..instances.sets import is_place_decision
-from .pairing import Pairs
-from .stands import Stands
+from ..common.categories import TOLERANCE, Categories
+from ..common.instance_sets import is_place_decision
+from .prompt_pairing import Pairs
+from .rack_poses import RackPoses
 
 HEIGHT = EXTENTS.stop - 1  # the columns of the vertical extent and of the vertical position
 ELEVATION = POSITION.stop - 1
 
 
 def relabel(
-    pairs: Pairs, categories: Categories, stands: Stands, generator: np.random.Generator
+    pairs: Pairs, categories: Categories, stands: RackPoses, generator: np.random.Generator
 ) -> Pairs:
     """Relabel each prompt by a permutation of its own, and its pick situations by the same.
 

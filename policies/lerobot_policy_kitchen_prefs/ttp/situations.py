@@ -4,7 +4,7 @@ from typing import NamedTuple, Self
 
 from torch import Tensor
 
-from ..instances.sets import is_real
+from ..common.instance_sets import is_real
 
 
 class Situations(NamedTuple):

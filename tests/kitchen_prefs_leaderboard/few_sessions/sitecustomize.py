@@ -4,4 +4,4 @@ from dataclasses import replace
 
 from kitchen_prefs.splits import SPLITS, TEST_SPLITS
 
-SPLITS.update({name: replace(SPLITS[name], people=SPLITS[name].people[:6]) for name in TEST_SPLITS})
+SPLITS.update({name: replace(SPLITS[name], users=SPLITS[name].users[:6]) for name in TEST_SPLITS})

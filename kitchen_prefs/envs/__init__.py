@@ -1,0 +1,10 @@
+"""The gymnasium environment and what it is made of.
+
+observations       what a decision sees, as an instance set and as flat summaries
+actions            the row that an action chooses
+rewards            the paper's dense reward
+episode_simulator  one session, decision by decision
+demonstrations     the expert's episode as a demonstration and as a prompt
+environment        `kitchen_prefs/DishwasherLoading-v0`
+lerobot_env        LeRobot's view of it
+"""

@@ -1,0 +1,165 @@
+"""One session being played: what is seen, what an action decides, and the facts of the episode.
+
+The gymnasium environment and the replays of the leaderboard play this one game.
+"""
+
+import hashlib
+from collections.abc import Sequence
+
+import numpy as np
+
+from kitchen_prefs.envs.actions import nearest_row
+from kitchen_prefs.envs.observations import FAILED_PICKS, Observation, Observer
+from kitchen_prefs.metrics import Episode
+from kitchen_prefs.preferences import CATEGORIES, RACKS
+from kitchen_prefs.simulation import kitchen as k
+from kitchen_prefs.simulation.kitchen import Kitchen, Location, decision_kind
+from kitchen_prefs.simulation.sessions import Session, expert_trajectory
+from kitchen_prefs.splits import get_split
+
+Action = np.ndarray | Sequence[float]  # a pose: position (m) and quaternion (wxyz), (7,)
+
+LIMIT_FACTOR = 2  # an episode ends at twice the expert's number of decisions
+
+
+class EpisodeSimulator:
+    """A session from its start to where it stands now.
+
+    Args:
+        session: What is played.
+
+    Attributes:
+        session: What is played.
+        kitchen: Its kitchen.
+        seen: What the next decision sees.
+        decisions: The instances chosen so far.
+        forbidden: For each of them, whether the kitchen could not carry it out.
+        limit: How many decisions an episode has at most.
+    """
+
+    def __init__(self, session: Session) -> None:
+        noisy = get_split(session.split).noisy
+        self.session = session
+        self.kitchen = Kitchen(session.dishes)
+        self.decisions: list[int] = []
+        self.refused: list[bool] = []
+        self.limit = LIMIT_FACTOR * len(expert_trajectory(session).decisions)
+        self._actions: list[tuple[float, ...]] = []
+        self._closed_early = 0
+        self._grasp = session.generator("grasp") if noisy else None
+        noise = session.generator("noise") if noisy else None
+        self.observer = Observer(self.kitchen, session.generator("order"), noise)
+        self.seen: Observation = self.observer.observe()
+
+    @property
+    def terminated(self) -> bool:
+        """Whether everything is packed and closed."""
+        return self.kitchen.finished
+
+    @property
+    def truncated(self) -> bool:
+        """Whether the limit of decisions is reached before that."""
+        return not self.terminated and len(self.decisions) >= self.limit
+
+    def choose(self, action: Action) -> tuple[int, float]:
+        """The instance that an action chooses now, and how far away it is.
+
+        Raises:
+            ValueError: If the action has another shape or is not finite.
+        """
+        row, distance = nearest_row(self.seen.rows, action)
+        return int(self.seen.ids[row]), distance
+
+    def act(self, action: Action) -> str:
+        """Carry out the decision for what an action chooses; see `choose` and `decide`."""
+        return self.decide(self.choose(action)[0], action)
+
+    def decide(self, instance: int, action: Action) -> str:
+        """Carry out one decision and look again.
+
+        Args:
+            instance: What the action chooses.
+            action: The action, which is kept.
+
+        Returns:
+            Why the kitchen did not carry it out, or an empty string.
+        """
+        early = instance == k.DOOR and self._door_closes_early()
+        refusal = self._carry_out(instance)
+        self.decisions.append(instance)
+        self.refused.append(bool(refusal))
+        self._actions.append(tuple(float(value) for value in action))
+        self._closed_early += early and not refusal
+        self.seen = self.observer.observe()
+        return refusal
+
+    def digest(self) -> str:
+        """A hash of the kitchen's state and of all that was decided, the same in every process."""
+        sha = hashlib.sha256(self.kitchen.digest().encode())
+        sha.update(repr((self.decisions, self.refused)).encode())
+        return sha.hexdigest()
+
+    def episode(self) -> Episode:
+        """The facts of the episode so far, from which every metric is computed."""
+        session, kitchen = self.session, self.kitchen
+        expert = expert_trajectory(session)
+        placed, wrong_rack = _standing(kitchen, session)
+        return Episode(
+            split=session.split,
+            session=session.index,
+            salt=session.salt,
+            preference=session.label,
+            count=session.count,
+            decisions=tuple(self.decisions),
+            kinds=tuple(decision_kind(instance, session.dishes) for instance in self.decisions),
+            expert_decisions=expert.decisions,
+            expert_kinds=expert.kinds,
+            placed=placed,
+            expert_placed=_standing(expert.kitchen, session)[0],
+            wrong_rack=wrong_rack,
+            sunk=int((kitchen.location == Location.SINK).sum()),
+            expert_sunk=int((expert.kitchen.location == Location.SINK).sum()),
+            refused=tuple(self.refused),
+            blocked_places=sum(
+                was_refused and instance >= k.SINK
+                for was_refused, instance in zip(self.refused, self.decisions, strict=True)
+            ),
+            longest_loop=_longest_loop(self.decisions, self.refused),
+            closed_early=self._closed_early,
+            closed=kitchen.closed,
+            finished=kitchen.finished,
+            actions=tuple(self._actions),
+        )
+
+    def _carry_out(self, instance: int) -> str:
+        fails = self._grasp is not None and self._grasp.random() < FAILED_PICKS
+        if fails and instance >= k.FIRST_DISH and self.kitchen.held is None:
+            return "The grasp failed."
+        return self.kitchen.decide(instance)
+
+    def _door_closes_early(self) -> bool:
+        waiting = len(self.kitchen.counter) > 0 or not self.kitchen.all_arrived
+        return self.kitchen.door_open and waiting
+
+
+def _standing(kitchen: Kitchen, session: Session) -> tuple[tuple[int, int], int]:
+    """The dishes that stand in their preferred rack, (top, bottom), and those in the other rack."""
+    standing = {"top": 0, "bottom": 0}
+    wrong = 0
+    for rack in RACKS:
+        for category in kitchen.dishes.category[kitchen.location == k.IN_RACK[rack]]:
+            right = session.preference.rack_of[CATEGORIES[category]] == rack
+            standing[rack] += right
+            wrong += not right
+    return (standing["top"], standing["bottom"]), wrong
+
+
+def _longest_loop(decisions: list[int], refused: list[bool]) -> int:
+    """The longest run of one forbidden choice that is repeated."""
+    longest = run = 0
+    previous = None
+    for instance, was_refused in zip(decisions, refused, strict=True):
+        run = (run + 1 if instance == previous else 1) if was_refused else 0
+        previous = instance if was_refused else None
+        longest = max(longest, run)
+    return longest

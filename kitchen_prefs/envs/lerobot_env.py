@@ -1,0 +1,96 @@
+"""LeRobot's view of the environment: `--env.type=kitchen_prefs --env.task=<split>`."""
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import gymnasium
+from lerobot.configs import FeatureType, PolicyFeature
+from lerobot.envs.configs import EnvConfig
+from lerobot.envs.utils import freeze_after_episode_end
+from lerobot.utils.constants import ACTION, OBS_ENV_STATE, OBS_STATE
+
+from kitchen_prefs import instances
+from kitchen_prefs.envs.environment import TRACKS, DishwasherLoading
+from kitchen_prefs.envs.observations import ENVIRONMENT_STATE_SIZE, STATE_SIZE
+from kitchen_prefs.splits import get_split
+from kitchen_prefs.utils.suggestions import suggest
+
+OBS_INSTANCES = "observation.instances"
+OBS_PROMPT = "observation.prompt"
+OBS_PREFERENCE = "observation.preference"
+
+FEATURES_MAP = {
+    ACTION: ACTION,
+    "agent_pos": OBS_STATE,
+    "environment_state": OBS_ENV_STATE,
+    "instances": OBS_INSTANCES,
+    "prompt": OBS_PROMPT,
+    "preference": OBS_PREFERENCE,
+}
+
+
+def features_of(track: str) -> dict[str, PolicyFeature]:
+    """The environment's raw keys on a track, as LeRobot's features."""
+    prompt_shape = (instances.PROMPT_CAPACITY, instances.PROMPT_COLUMNS)
+    features = {
+        ACTION: PolicyFeature(FeatureType.ACTION, (7,)),
+        "agent_pos": PolicyFeature(FeatureType.STATE, (STATE_SIZE,)),
+        "environment_state": PolicyFeature(FeatureType.ENV, (ENVIRONMENT_STATE_SIZE,)),
+        "instances": PolicyFeature(FeatureType.STATE, (instances.CAPACITY, instances.COLUMNS)),
+        "prompt": PolicyFeature(FeatureType.STATE, prompt_shape),
+    }
+    if track == "privileged":
+        features["preference"] = PolicyFeature(FeatureType.STATE, (1,))
+    return features
+
+
+@EnvConfig.register_subclass("kitchen_prefs")
+@dataclass
+class KitchenPrefsEnv(EnvConfig):
+    """Sessions of one split.
+
+    Attributes:
+        task: The split.
+        track: "standard", "privileged" (adds the preference's label) or "language" (gives the
+            preference in words as the task).
+
+    Raises:
+        ValueError: If the split or the track is unknown.
+    """
+
+    task: str = "seen"
+    fps: int = DishwasherLoading.metadata["render_fps"]
+    track: str = "standard"
+    features: dict[str, PolicyFeature] = field(default_factory=dict)
+    features_map: dict[str, str] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        get_split(self.task)
+        if self.track not in TRACKS:
+            raise ValueError(f"There is no track {self.track!r}. {suggest(self.track, TRACKS)}")
+        self.features = features_of(self.track)
+        self.features_map = {key: FEATURES_MAP[key] for key in self.features}
+
+    @property
+    def gym_kwargs(self) -> dict[str, Any]:
+        """The environment's arguments."""
+        return {"split": self.task, "track": self.track, "render_mode": "rgb_array"}
+
+    def create_envs(
+        self, n_envs: int, use_async_envs: bool = False
+    ) -> dict[str, dict[int, gymnasium.vector.VectorEnv]]:
+        """A batch of environments that rest once their episode has ended.
+
+        They run in this process unless `use_async_envs` asks for others: a decision takes a tenth
+        of a millisecond, starting a process takes seconds.
+        """
+        make_one = freeze_after_episode_end(lambda: DishwasherLoading(**self.gym_kwargs))
+        mode = gymnasium.vector.AutoresetMode.SAME_STEP
+        batch: gymnasium.vector.VectorEnv
+        if use_async_envs and n_envs > 1:
+            batch = gymnasium.vector.AsyncVectorEnv(
+                [make_one] * n_envs, context="forkserver", autoreset_mode=mode
+            )
+        else:
+            batch = gymnasium.vector.SyncVectorEnv([make_one] * n_envs, autoreset_mode=mode)
+        return {self.type: {0: batch}}

@@ -1,0 +1,10 @@
+"""Evaluates policies on splits.
+
+policy_loading        a LeRobot policy with its processors, ready to act
+checkpoint_reading    a checkpoint's files, and what is wrong with them in one sentence
+rollouts              a policy on every session of a split
+episode_files         one JSON line an episode
+evaluator             a policy's episodes, metrics and failure modes on a split
+checkpoint_selection  the best checkpoint of a run, by Score on val
+commands              `kitchen-prefs evaluate` and `kitchen-prefs select`
+"""

@@ -1,0 +1,63 @@
+"""Which checkpoint of a training run is the best: the one with the highest Score on val."""
+
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+from kitchen_prefs.evaluation.evaluator import Evaluator
+from kitchen_prefs.evaluation.policy_loading import load_policy
+from kitchen_prefs.evaluation.rollouts import BATCH_SIZE
+from kitchen_prefs.metrics import Interval
+from kitchen_prefs.utils.files import write_json
+
+
+@dataclass(frozen=True)
+class Selection:
+    """The checkpoints of a run, compared.
+
+    Attributes:
+        best: The folder of the best checkpoint; of equal ones the earliest.
+        metrics: Each checkpoint's metrics on val, by its step.
+    """
+
+    best: Path
+    metrics: dict[str, dict[str, Interval]]
+
+
+def select_checkpoint(
+    run: Path, *, track: str | None = None, batch_size: int = BATCH_SIZE
+) -> Selection:
+    """Evaluate a run's checkpoints on val and write RUN/selection.json.
+
+    The episodes are kept in RUN/selection, so that a selection that was killed goes on.
+
+    Args:
+        run: The output folder of `lerobot-train` or `kitchen-prefs reinforce`.
+        track: What the environment tells the policy; if not given, what its settings ask for.
+        batch_size: How many sessions are played at once.
+
+    Raises:
+        ValueError: If the run has no checkpoints.
+    """
+    folders = {
+        folder.parent.name: folder
+        for folder in sorted(run.glob("checkpoints/*/pretrained_model"))
+        if folder.parent.name.isdigit()  # the link "last" names one of them again
+    }
+    if not folders:
+        raise ValueError(f"{run} holds no checkpoints; give the output folder of a training.")
+    metrics = {}
+    for step, folder in folders.items():
+        loaded_policy = load_policy(str(folder), track=track)
+        evaluator = Evaluator(loaded_policy, run / "selection" / step, batch_size=batch_size)
+        metrics[step] = evaluator.evaluate("val").metrics
+    best = max(folders, key=lambda step: metrics[step]["Score"].mean)
+    content = {
+        "best": str(folders[best].relative_to(run)),
+        "split": "val",
+        "checkpoints": {
+            step: {name: asdict(interval) for name, interval in of_step.items()}
+            for step, of_step in metrics.items()
+        },
+    }
+    write_json(run / "selection.json", content)
+    return Selection(folders[best], metrics)

@@ -1,0 +1,160 @@
+"""`kitchen-prefs evaluate` and `kitchen-prefs select`.
+
+LeRobot and torch take many seconds to import, so the commands import what needs them when they run;
+`--help` stays quick.
+"""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+from rich.console import Console
+from rich.table import Table
+
+from kitchen_prefs.metrics import METRICS, Interval
+from kitchen_prefs.splits import get_split
+from kitchen_prefs.utils.files import make_folder
+
+if TYPE_CHECKING:
+    from kitchen_prefs.evaluation.evaluator import Summary
+
+app = typer.Typer()
+console = Console()
+
+Track = Annotated[
+    str | None,
+    typer.Option(
+        help="What the policy is told: standard, privileged or language.",
+        show_default="as the policy asks",
+    ),
+]
+BatchSize = Annotated[int, typer.Option(help="How many sessions are played at once.", min=1)]
+
+
+@app.command(context_settings={"allow_extra_args": True, "ignore_unknown_options": True})
+def evaluate(
+    context: typer.Context,
+    split: Annotated[list[str], typer.Option(help="A split; several, or a list with commas.")],
+    out: Annotated[Path, typer.Option(help="The folder that keeps the episodes.")],
+    path: Annotated[
+        str | None, typer.Option("--policy.path", help="A checkpoint's folder, or its hub name.")
+    ] = None,
+    policy_type: Annotated[
+        str | None, typer.Option("--policy.type", help="A policy that needs no training.")
+    ] = None,
+    track: Track = None,
+    salt: Annotated[
+        int, typer.Option(help="0: the published sessions; else fresh ones.", min=0)
+    ] = 0,
+    prompts: Annotated[
+        int, typer.Option(help="How many demonstrations prompt an episode.", min=1)
+    ] = 1,
+    batch_size: BatchSize = 16,
+    prompt_use: Annotated[
+        bool, typer.Option("--prompt-use", help="Also play with another preference's prompt.")
+    ] = False,
+    category_accuracy: Annotated[
+        bool, typer.Option("--category-accuracy", help="Also ask in each state of the expert.")
+    ] = False,
+) -> None:
+    """Roll a policy out on splits and print its metrics and why episodes fell short.
+
+    OUT keeps one line an episode, so a command that was killed goes on.
+    Any other --policy.SETTING=VALUE overrides a setting of the policy.
+
+    For example:
+    kitchen-prefs evaluate --split=seen,unseen_counts --out=outputs/ttp
+    --policy.path=outputs/ttp_quick/checkpoints/last/pretrained_model
+
+    A policy that needs no training:
+    kitchen-prefs evaluate --split=seen --out=outputs/symbolic
+    --policy.type=rules --policy.rule=symbolic
+    """
+    names = _names(split)
+    settings = settings_of(context.args)
+    make_folder(out, "--out")
+    from kitchen_prefs.evaluation.evaluator import Evaluator
+    from kitchen_prefs.evaluation.policy_loading import load_policy
+
+    loaded_policy = load_policy(path, policy_type, settings, track=track)
+    evaluator = Evaluator(loaded_policy, out, salt, prompts, batch_size)
+    summaries = []
+    for name in names:
+        summary = evaluator.evaluate(
+            name, with_prompt_use=prompt_use, with_category_accuracy=category_accuracy
+        )
+        _print_summary(summary)
+        summaries.append(summary)
+    if len(summaries) > 1:
+        _print_overview(summaries, evaluator.mean_of_splits(names))
+    console.print(f"Episodes and summaries are in {out}.")
+
+
+@app.command()
+def select(
+    run: Annotated[Path, typer.Argument(help="The output folder of lerobot-train or `reinforce`.")],
+    track: Track = None,
+    batch_size: BatchSize = 16,
+) -> None:
+    """Evaluate a run's saved checkpoints on val and name the one with the best Score.
+
+    Writes RUN/selection.json; a command that was killed goes on.
+
+    For example:
+    kitchen-prefs select outputs/ttp_quick
+    """
+    from kitchen_prefs.evaluation.checkpoint_selection import select_checkpoint
+
+    selection = select_checkpoint(run, track=track, batch_size=batch_size)
+    table = Table("Step", *METRICS, title="val")
+    for step, metrics in selection.metrics.items():
+        _add_intervals(table, step, metrics)
+    console.print(table)
+    console.print(f"The best by Score is {selection.best}.")
+
+
+def _names(splits: Sequence[str]) -> list[str]:
+    names = [name.strip() for text in splits for name in text.split(",")]
+    return list(dict.fromkeys(get_split(name).name for name in names))
+
+
+def settings_of(arguments: Sequence[str]) -> list[str]:
+    """The --policy.SETTING=VALUE among the unknown arguments, as --SETTING=VALUE."""
+    for argument in arguments:
+        if not argument.startswith("--policy.") or "=" not in argument:
+            raise ValueError(
+                f"There is no option {argument!r}; a policy's setting is --policy.SETTING=VALUE."
+            )
+    return [f"--{argument.removeprefix('--policy.')}" for argument in arguments]
+
+
+def _print_summary(summary: "Summary") -> None:
+    title = f"{summary.split}, {summary.episodes} episodes"
+    metrics = Table("Metric", "Mean", "95 % interval", title=title)
+    for name, interval in summary.metrics.items():
+        metrics.add_row(name, f"{interval.mean:.3f}", f"{interval.low:.3f} to {interval.high:.3f}")
+    console.print(metrics)
+    reasons = Table("Why episodes fell short", "Episodes", "Times")
+    for reason, (episodes, times) in summary.failure_modes.items():
+        if times:
+            reasons.add_row(reason, str(episodes), str(times))
+    if reasons.row_count:
+        console.print(reasons)
+
+
+def _print_overview(summaries: Sequence["Summary"], mean: dict[str, Interval]) -> None:
+    table = Table("Split", *METRICS, title="Means")
+    for summary in summaries:
+        _add_intervals(table, summary.split, summary.metrics)
+    _add_intervals(table, "mean of the splits", mean)
+    console.print(table)
+
+
+def _add_intervals(table: Table, name: str, metrics: dict[str, Interval]) -> None:
+    """Three rows, as all intervals side by side would be wider than a terminal."""
+    intervals = [metrics[metric] for metric in METRICS]
+    table.add_row(name, *(f"{interval.mean:.3f}" for interval in intervals))
+    table.add_row("  95 % from", *(f"{interval.low:.3f}" for interval in intervals))
+    table.add_row("         to", *(f"{interval.high:.3f}" for interval in intervals))
+    table.add_section()

@@ -1,0 +1,154 @@
+"""The file of an evaluation: one JSON line an episode, appended as soon as the episode ends.
+
+A file holds episodes of one split under one set of conditions, which stand in a header beside it.
+It outlives a kill: a torn last line is dropped, and the sessions that are there are not played
+again.
+"""
+
+import json
+from dataclasses import asdict, dataclass, fields
+from pathlib import Path
+from typing import Any
+
+from kitchen_prefs.metrics import METRICS, Episode, category_accuracy, failure_modes
+from kitchen_prefs.utils.files import write_json
+
+
+@dataclass(frozen=True)
+class EvaluationConditions:
+    """What all episodes of a file have in common.
+
+    Attributes:
+        policy: The policy's type.
+        fingerprint: A hash of its weights and of the settings that change what it does.
+        track: What the policy is told: "standard", "privileged" or "language".
+        prompt_of: Whose demonstration the prompt is: of the "same" or of an "other" preference.
+        prompts: How many demonstrations prompt an episode.
+        expert_states: Whether the decisions were taken in the expert's states.
+        salt: Which drawing of the split's sessions; 0 is the published one.
+        data_version: The version of the sessions.
+        package_version: The version of this package.
+    """
+
+    policy: str
+    fingerprint: str
+    track: str
+    prompt_of: str
+    prompts: int
+    expert_states: bool
+    salt: int
+    data_version: int
+    package_version: str
+
+
+class EpisodeFile:
+    """The episodes of one split under one set of conditions, on disk.
+
+    Args:
+        path: A .jsonl file, made with its folder if it is not there.
+        conditions: The conditions of the episodes to come.
+
+    Attributes:
+        episodes: The episodes so far, in the order in which they ended.
+
+    Raises:
+        ValueError: If the file holds episodes under other or unknown conditions, or cannot be read.
+    """
+
+    def __init__(self, path: Path, conditions: EvaluationConditions) -> None:
+        self.path = path
+        self.conditions = conditions
+        path.parent.mkdir(parents=True, exist_ok=True)
+        _check_conditions(path, conditions)
+        _drop_torn_line(path)
+        self.episodes = read_episodes(path)
+
+    def append(self, episode: Episode) -> None:
+        """Write an episode, with what it says of the policy."""
+        with self.path.open("a") as file:
+            file.write(json.dumps(asdict(episode) | self._judge(episode)) + "\n")
+        self.episodes.append(episode)
+
+    def _judge(self, episode: Episode) -> dict[str, dict[str, Any]]:
+        """The metrics, and why the episode fell short.
+
+        What is loaded in the expert's states is the expert's merit; the policy's is the accuracy of
+        its choices alone.
+        """
+        if self.conditions.expert_states:
+            return {"metrics": {"Category accuracy": category_accuracy(episode)}}
+        return {
+            "metrics": {name: metric(episode) for name, metric in METRICS.items()},
+            "failure_modes": failure_modes(episode),
+        }
+
+
+def read_episodes(path: Path) -> list[Episode]:
+    """Read the episodes of a file.
+
+    Raises:
+        ValueError: If a line is not an episode.
+    """
+    lines = path.read_text().splitlines()
+    return [_parse(line, f"Line {n} of {path}") for n, line in enumerate(lines, start=1)]
+
+
+def _check_conditions(path: Path, conditions: EvaluationConditions) -> None:
+    header = path.with_suffix(".header.json")
+    way_out = "give another --out, or delete that folder."
+    if not header.exists():
+        if path.exists() and path.stat().st_size:
+            raise ValueError(
+                f"{path} holds episodes of an unknown policy, as {header.name} is not "
+                f"there; {way_out}"
+            )
+        write_json(header, asdict(conditions))
+        return
+    there = read_header(header, way_out)
+    differing = [name for name, value in asdict(conditions).items() if there.get(name) != value]
+    if differing:
+        raise ValueError(
+            f"{path} holds episodes of another policy or under other conditions: another "
+            f"{' and '.join(differing)}; {way_out}"
+        )
+
+
+def read_header(header: Path, way_out: str) -> dict:
+    """Read the conditions of a file of episodes.
+
+    Args:
+        header: The file beside it.
+        way_out: Ends the error's sentence.
+
+    Raises:
+        ValueError: If it is no header.
+    """
+    try:
+        content = json.loads(header.read_text())
+    except ValueError:
+        content = None
+    if not isinstance(content, dict) or "fingerprint" not in content:
+        raise ValueError(f"{header} is damaged; {way_out}")
+    return content
+
+
+def _drop_torn_line(path: Path) -> None:
+    path.touch()
+    content = path.read_bytes()
+    if not content.endswith(b"\n"):
+        with path.open("r+b") as file:
+            file.truncate(content.rfind(b"\n") + 1)
+
+
+def _parse(line: str, where: str) -> Episode:
+    try:
+        content = json.loads(line)
+        facts = {field.name: _tuples(content[field.name]) for field in fields(Episode)}
+        return Episode(**facts)
+    except (KeyError, TypeError, ValueError) as error:
+        raise ValueError(f"{where} is not an episode; delete the file to start anew.") from error
+
+
+def _tuples(value: Any) -> Any:
+    """JSON knows lists alone; the facts of an episode are tuples."""
+    return tuple(map(_tuples, value)) if isinstance(value, list) else value

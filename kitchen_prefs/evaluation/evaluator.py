@@ -1,0 +1,137 @@
+"""What a policy is worth on a split: its episodes on disk, its metrics, and where it fell short."""
+
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from functools import cached_property
+from importlib.metadata import version
+from pathlib import Path
+
+from kitchen_prefs.evaluation.episode_files import EpisodeFile, EvaluationConditions
+from kitchen_prefs.evaluation.policy_loading import LoadedPolicy
+from kitchen_prefs.evaluation.rollouts import BATCH_SIZE, roll_out
+from kitchen_prefs.metrics import (
+    METRICS,
+    Episode,
+    Interval,
+    category_accuracy,
+    failure_modes,
+    mean_of_splits,
+    prompt_use,
+    summarise,
+)
+from kitchen_prefs.splits import DATA_VERSION
+from kitchen_prefs.utils.files import write_json
+
+
+@dataclass(frozen=True)
+class Summary:
+    """What the episodes of one split say.
+
+    Attributes:
+        split: The split's name.
+        episodes: How many episodes there are.
+        metrics: Each metric's mean and interval.
+        shortcomings: For each reason why episodes fell short, in how many it occurred and how often
+            in all.
+    """
+
+    split: str
+    episodes: int
+    metrics: dict[str, Interval]
+    failure_modes: dict[str, tuple[int, int]]
+
+
+@dataclass(frozen=True)
+class Evaluator:
+    """A policy and the folder that keeps its episodes.
+
+    An evaluation that was killed goes on where it stopped when it is asked for again.
+
+    Attributes:
+        actor: The policy.
+        folder: Holds <split>.jsonl, one line an episode, and <split>.json, the summary.
+        salt: Which drawing of the sessions; 0 is the published one.
+        prompts: How many demonstrations prompt an episode.
+        batch_size: How many sessions are played at once.
+    """
+
+    loaded_policy: LoadedPolicy
+    folder: Path
+    salt: int = 0
+    prompts: int = 1
+    batch_size: int = BATCH_SIZE
+
+    def evaluate(
+        self, split: str, *, with_prompt_use: bool = False, with_category_accuracy: bool = False
+    ) -> Summary:
+        """Evaluate the policy on a split and write the summary.
+
+        Args:
+            split: The split's name.
+            with_prompt_use: Play each session with another preference's prompt, too.
+            with_category_accuracy: Ask for the policy's choices in the expert's states, too.
+
+        Raises:
+            ValueError: If the folder holds episodes of another policy, track, salt, number of
+                prompts or version.
+        """
+        episodes = self.episodes(split)
+        metrics = {name: summarise(episodes, metric) for name, metric in METRICS.items()}
+        if with_prompt_use:
+            metrics["Prompt use"] = prompt_use(episodes, self.episodes(split, prompt_of="other"))
+        if with_category_accuracy:
+            beside_expert = self.episodes(split, expert_states=True)
+            metrics["Category accuracy"] = summarise(beside_expert, category_accuracy)
+        summary = Summary(split, len(episodes), metrics, _count_failure_modes(episodes))
+        conditions = self._conditions("same", expert_states=False)
+        write_json(
+            self.folder / f"{split}.json", {**asdict(summary), "conditions": asdict(conditions)}
+        )
+        return summary
+
+    def mean_of_splits(self, splits: Sequence[str]) -> dict[str, Interval]:
+        """Each metric's mean over splits, each of which counts the same."""
+        episodes = [self.episodes(split) for split in splits]
+        return {name: mean_of_splits(episodes, metric) for name, metric in METRICS.items()}
+
+    def episodes(
+        self, split: str, *, prompt_of: str = "same", expert_states: bool = False
+    ) -> list[Episode]:
+        """The policy's episodes on a split; those that are not in the folder are played first."""
+        name = split + "-other-prompt" * (prompt_of == "other") + "-expert-states" * expert_states
+        return roll_out(
+            self.loaded_policy,
+            split,
+            salt=self.salt,
+            track=self.loaded_policy.track,
+            prompt_of=prompt_of,
+            prompts=self.prompts,
+            expert_states=expert_states,
+            batch_size=self.batch_size,
+            file=EpisodeFile(
+                self.folder / f"{name}.jsonl", self._conditions(prompt_of, expert_states)
+            ),
+        )
+
+    @cached_property
+    def _fingerprint(self) -> str:
+        return self.loaded_policy.fingerprint
+
+    def _conditions(self, prompt_of: str, expert_states: bool) -> EvaluationConditions:
+        return EvaluationConditions(
+            policy=self.loaded_policy.policy.config.type,
+            fingerprint=self._fingerprint,
+            track=self.loaded_policy.track,
+            prompt_of=prompt_of,
+            prompts=self.prompts,
+            expert_states=expert_states,
+            salt=self.salt,
+            data_version=DATA_VERSION,
+            package_version=version("lerobot_policy_kitchen_prefs"),
+        )
+
+
+def _count_failure_modes(episodes: Sequence[Episode]) -> dict[str, tuple[int, int]]:
+    each = [failure_modes(episode) for episode in episodes]
+    times = {reason: [one[reason] for one in each] for reason in each[0]}
+    return {reason: (sum(n > 0 for n in counts), sum(counts)) for reason, counts in times.items()}

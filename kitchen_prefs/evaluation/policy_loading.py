@@ -1,0 +1,184 @@
+"""A LeRobot policy made ready to act: loaded, with its processors, known by a fingerprint."""
+
+import hashlib
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import draccus
+import numpy as np
+import torch
+from draccus.utils import ParsingError
+from lerobot.configs import PreTrainedConfig
+from lerobot.envs import env_to_policy_features, preprocess_observation
+from lerobot.policies import PreTrainedPolicy, get_policy_class, make_pre_post_processors
+from lerobot.processor import PolicyProcessorPipeline
+from lerobot.utils.constants import ACTION
+from lerobot.utils.import_utils import register_third_party_plugins
+
+from kitchen_prefs.envs.lerobot_env import KitchenPrefsEnv
+from kitchen_prefs.evaluation.checkpoint_reading import (
+    check_settings,
+    find_checkpoint,
+    read_config,
+    read_policy,
+    read_processors,
+)
+from kitchen_prefs.utils.suggestions import suggest
+
+# Where a policy runs and where it is kept say nothing about what it does.
+NOT_BEHAVIOUR = (
+    "device",
+    "license",
+    "pretrained_path",
+    "pretrained_revision",
+    "private",
+    "push_to_hub",
+    "repo_id",
+    "tags",
+)
+
+
+@dataclass(frozen=True)
+class LoadedPolicy:
+    """A policy with its processors, as `lerobot-eval` runs it.
+
+    Attributes:
+        policy: The policy.
+        preprocessor: Its pipeline from observations to inputs.
+        postprocessor: Its pipeline from outputs to actions.
+        track: What the environment tells it.
+    """
+
+    policy: PreTrainedPolicy
+    preprocessor: PolicyProcessorPipeline
+    postprocessor: PolicyProcessorPipeline
+    track: str
+
+    def reset(self) -> None:
+        """Forget everything: a new batch of episodes begins."""
+        self.policy.reset()
+
+    def act(self, observations: Sequence[dict[str, np.ndarray]], tasks: list[str]) -> np.ndarray:
+        """Decide for B episodes at once.
+
+        Args:
+            observations: What each environment shows.
+            tasks: What each environment says to do.
+
+        Returns:
+            The actions, (B, 7) float32.
+        """
+        names = observations[0].keys()
+        stacked = {name: np.stack([seen[name] for seen in observations]) for name in names}
+        batch: dict[str, Any] = preprocess_observation(stacked)
+        batch["task"] = tasks
+        with torch.inference_mode():
+            action = self.policy.select_action(self.preprocessor(batch))  # (B, 7)
+        return self.postprocessor(action).to("cpu", torch.float32).numpy()
+
+    @property
+    def fingerprint(self) -> str:
+        """A hash of all weights and settings, the processors' too, that change what it does."""
+        sha = hashlib.sha256()
+        settings = draccus.encode(self.policy.config, PreTrainedConfig)
+        _add(sha, settings, self.policy.state_dict())
+        for pipeline in (self.preprocessor, self.postprocessor):
+            for step in pipeline.steps:
+                _add(sha, {"step": type(step).__name__, **step.get_config()}, step.state_dict())
+        return sha.hexdigest()
+
+
+def _add(
+    sha: "hashlib._Hash", settings: dict[str, Any], weights: Mapping[str, torch.Tensor]
+) -> None:
+    kept = {name: value for name, value in settings.items() if name not in NOT_BEHAVIOUR}
+    sha.update(json.dumps(kept, sort_keys=True).encode())
+    for name, weight in sorted(weights.items()):
+        sha.update(name.encode())
+        sha.update(weight.detach().cpu().reshape(-1).view(torch.uint8).numpy().tobytes())
+
+
+def load_policy(
+    path: str | None = None,
+    policy_type: str | None = None,
+    options: Sequence[str] = (),
+    *,
+    track: str | None = None,
+) -> LoadedPolicy:
+    """Load a checkpoint, or make a policy that needs no training.
+
+    Args:
+        path: A checkpoint's folder `pretrained_model`, or its name on the Hugging Face hub.
+        policy_type: The type of a policy that needs no training, such as "rules".
+        options: Settings of the policy to override, as in `--rule=expert`.
+        track: What the environment tells the policy; if not given, the track that the policy's
+            settings ask for, or else the standard one.
+
+    Returns:
+        The policy, ready to act.
+
+    Raises:
+        ValueError: If not just one of `path` and `policy_type` is given, or if the policy is
+            unknown, damaged or not trained, has no such setting, or does not fit the environment.
+    """
+    register_third_party_plugins()
+    if (path is None) == (policy_type is None):
+        raise ValueError("Give either --policy.path=CHECKPOINT or --policy.type=TYPE.")
+    try:
+        if path:
+            return _trained(find_checkpoint(path), options, track)
+        return _untrained(str(policy_type), options, track)
+    except ParsingError as error:
+        raise ValueError(f"The policy's settings are wrong: {error.__cause__ or error}") from error
+
+
+def _trained(folder: Path, options: Sequence[str], track: str | None) -> LoadedPolicy:
+    config = read_config(folder, options)
+    environment = _environment(config, track)
+    _check_features(config, environment)
+    preprocessor, postprocessor = read_processors(folder, config)
+    return LoadedPolicy(read_policy(folder, config), preprocessor, postprocessor, environment.track)
+
+
+def _untrained(policy_type: str, options: Sequence[str], track: str | None) -> LoadedPolicy:
+    """Make a policy without weights; LeRobot's factory would warn that it lacks statistics."""
+    known = PreTrainedConfig.get_known_choices()
+    if policy_type not in known:
+        raise ValueError(f"There is no policy type {policy_type!r}. {suggest(policy_type, known)}")
+    check_settings(known[policy_type], options)
+    config = draccus.parse(known[policy_type], args=list(options))
+    environment = _environment(config, track)
+    features = env_to_policy_features(environment)
+    config.output_features = {ACTION: features.pop(ACTION)}
+    config.input_features = features
+    policy = get_policy_class(policy_type)(config)
+    if next(policy.parameters(), None) is not None:
+        raise ValueError(f"{policy_type!r} has to be trained first: give --policy.path=CHECKPOINT.")
+    policy.eval()
+    preprocessor, postprocessor = make_pre_post_processors(config)
+    return LoadedPolicy(policy, preprocessor, postprocessor, environment.track)
+
+
+def _environment(config: PreTrainedConfig, track: str | None) -> KitchenPrefsEnv:
+    asked_for: str = getattr(config, "track", "standard")
+    return KitchenPrefsEnv(track=track or asked_for)
+
+
+def _check_features(config: PreTrainedConfig, environment: KitchenPrefsEnv) -> None:
+    """Compare what a checkpoint was trained on with what the environment shows."""
+    shown = env_to_policy_features(environment)
+    trained_on = {**(config.input_features or {}), **(config.output_features or {})}
+    for name, feature in trained_on.items():
+        if name not in shown:
+            raise ValueError(
+                f"The policy was trained on {name!r}, which the environment does not show on the "
+                f"{environment.track} track."
+            )
+        if tuple(feature.shape) != tuple(shown[name].shape):
+            raise ValueError(
+                f"The policy was trained on {name!r} of shape {tuple(feature.shape)}; the "
+                f"environment's has {tuple(shown[name].shape)}. Train it on this data version."
+            )

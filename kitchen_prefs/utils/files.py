@@ -1,0 +1,73 @@
+"""Files that are either whole or not there, and folders that can be written."""
+
+import json
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from shutil import rmtree
+from tempfile import TemporaryFile
+
+
+@contextmanager
+def atomic_file(path: Path) -> Iterator[Path]:
+    """Write a file beside its place first, and move it there once all is written.
+
+    Args:
+        path: The file's place; what is there stays until the new file is whole.
+
+    Yields:
+        The path to write to, with the same suffix.
+    """
+    beside = path.with_name(f".unfinished-{path.name}")
+    try:
+        yield beside
+        beside.replace(path)
+    finally:
+        beside.unlink(missing_ok=True)
+
+
+@contextmanager
+def atomic_folder(path: Path) -> Iterator[Path]:
+    """Write a folder beside its place first, and move it there once all is written.
+
+    Args:
+        path: The folder's place; what is there stays until the new folder is whole.
+
+    Yields:
+        The folder to write to, which is empty.
+    """
+    beside, before = (path.with_name(f".{state}-{path.name}") for state in ("unfinished", "before"))
+    rmtree(beside, ignore_errors=True)  # of a process that was killed
+    beside.mkdir(parents=True)
+    try:
+        yield beside
+        if path.exists():
+            path.replace(before)
+        beside.replace(path)
+    finally:
+        rmtree(beside, ignore_errors=True)
+        rmtree(before, ignore_errors=True)
+
+
+def write_json(path: Path, content: dict) -> None:
+    """Write a JSON file so that it is either whole or not there."""
+    with atomic_file(path) as beside:
+        beside.write_text(json.dumps(content, indent=2) + "\n")
+
+
+def make_folder(path: Path, option: str) -> None:
+    """Make a folder if it is not there, and make sure that it can be written.
+
+    Args:
+        path: The folder.
+        option: The option of the command line that named it.
+
+    Raises:
+        OSError: If it cannot be made or written.
+    """
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+        with TemporaryFile(dir=path):
+            pass
+    except OSError as error:
+        raise OSError(f"{path} cannot be written; give another {option}.") from error

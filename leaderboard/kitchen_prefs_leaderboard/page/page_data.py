@@ -1,0 +1,117 @@
+"""What the page draws of episodes, as numbers that are short in JSON.
+
+A dish is seen from above. It is drawn as the shadow of an ellipsoid of its extents: an ellipse with
+a centre, two half axes and an angle; lengths are in millimetres, angles in degrees. What a decision
+changes is replayed by the page itself (kitchen.js).
+"""
+
+from collections.abc import Iterable
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from kitchen_prefs.metrics import (
+    Episode,
+    category_edit_similarity,
+    failure_modes,
+    packing_efficiency,
+    score,
+    success,
+)
+from kitchen_prefs.preferences import CATEGORIES
+from kitchen_prefs.simulation import layout
+from kitchen_prefs.simulation.kitchen import placement_table, rack_position
+from kitchen_prefs.simulation.sessions import (
+    Session,
+    expert_trajectory,
+    make_session,
+    preference_with,
+)
+from kitchen_prefs.splits import get_split
+
+DIGITS = 3  # of an episode's metrics
+MILLIMETRES = 1000
+
+
+def layout_data() -> dict:
+    """The kitchen's measures and the placements, which are the same in both racks."""
+    table = placement_table()
+    origin = np.array([*rack_position("top", out=True), 0, 0, 0, 0])
+    return {
+        "categories": CATEGORIES,
+        "extents": [_millimetres(layout.EXTENTS[category][:2]) for category in CATEGORIES],
+        "counter": [_millimetres(layout.COUNTER_X), _millimetres(layout.COUNTER_Y)],
+        "sink": [_millimetres(layout.SINK_CENTRE), _millimetres(layout.SINK_SIZE[:2])],
+        "rack": _millimetres(layout.RACK_INNER),
+        "placements": [
+            [int(category), *_shadow(layout.EXTENTS[CATEGORIES[category]], pose)]
+            for category, pose in zip(table.category, table.pose["top"] - origin, strict=True)
+        ],
+    }
+
+
+def session_data(split: str, index: int) -> dict:
+    """A session's dishes and what the expert does with them."""
+    session = make_session(split, index)
+    expert = expert_trajectory(session)
+    return {
+        "count": session.count,
+        "preference": session.label,
+        "present": session.dishes.present,
+        "dishes": _on_counter(session),
+        "expert": expert.decisions,
+    }
+
+
+def episode_data(episode: Episode) -> list:
+    """What a policy decided and what came of it.
+
+    Returns:
+        Decisions; which of them were forbidden; Score, PE and ED_c; whether it is a success; one
+        bit for each of `failure_modes`.
+    """
+    metrics = (score, packing_efficiency, category_edit_similarity)
+    reasons = failure_modes(episode).values()
+    return [
+        episode.decisions,
+        [step for step, refused in enumerate(episode.refused) if refused],
+        [round(metric(episode), DIGITS) for metric in metrics],
+        int(success(episode)),
+        sum((times > 0) << bit for bit, times in enumerate(reasons)),
+    ]
+
+
+def sessions_data(splits: Iterable[str]) -> dict[str, list[dict]]:
+    """All sessions of some splits."""
+    return {
+        split: [session_data(split, index) for index in range(get_split(split).sessions)]
+        for split in splits
+    }
+
+
+def preferences_in_words(sessions: dict[str, list[dict]]) -> dict[int, str]:
+    """The sentence of each preference that sessions have, by its label."""
+    labels = {session["preference"] for of_split in sessions.values() for session in of_split}
+    return {label: preference_with(label).in_words for label in sorted(labels)}
+
+
+def _on_counter(session: Session) -> list[int]:
+    """Category, x, y and angle of each dish, in a row."""
+    pose = session.dishes.pose
+    angle = 2 * np.degrees(np.arctan2(pose[:, 6], pose[:, 3]))
+    columns = [session.dishes.category, pose[:, 0] * MILLIMETRES, pose[:, 1] * MILLIMETRES, angle]
+    return np.round(np.stack(columns, axis=1)).astype(int).ravel().tolist()
+
+
+def _shadow(extents: tuple[float, float, float], pose: np.ndarray) -> list[int]:
+    """Centre, half axes and angle of an ellipsoid's shadow on the floor."""
+    rotation = Rotation.from_quat(pose[3:], scalar_first=True).as_matrix()  # (3, 3)
+    axes = rotation * (np.array(extents) / 2)  # (3, 3), a half axis each column
+    squares, directions = np.linalg.eigh((axes @ axes.T)[:2, :2])  # the shorter one first
+    long = directions[:, 1] * np.sign(directions[:, 1] @ axes[:2, 0] or 1)
+    angle = np.degrees(np.arctan2(long[1], long[0]))
+    return [*_millimetres(pose[:2]), *_millimetres(np.sqrt(squares[::-1])), round(angle)]
+
+
+def _millimetres(lengths: Iterable[float]) -> list[int]:
+    return [round(float(length) * MILLIMETRES) for length in lengths]

@@ -1,0 +1,99 @@
+"""A LeRobot policy plays the test splits, on several cores."""
+
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from pathlib import Path
+
+from kitchen_prefs.evaluation.commands import settings_of
+from kitchen_prefs.evaluation.episode_files import read_episodes, read_header
+from kitchen_prefs.evaluation.policy_loading import LoadedPolicy, load_policy
+from kitchen_prefs.metrics import Episode
+from kitchen_prefs.splits import TEST_SPLITS, get_split
+from kitchen_prefs.utils.processes import run_module
+from kitchen_prefs.utils.suggestions import suggest
+from kitchen_prefs_leaderboard.submission_format import TRACKS
+
+
+@dataclass(frozen=True)
+class Player:
+    """A policy that plays.
+
+    Attributes:
+        actor: The policy.
+        named: What `kitchen-prefs evaluate` is told of it.
+    """
+
+    loaded_policy: LoadedPolicy
+    named: tuple[str, ...]
+
+    def play(self, folder: Path, salt: int, jobs: int) -> dict[str, list[Episode]]:
+        """Play the test splits; what is played already is not played again.
+
+        Args:
+            folder: Keeps the episodes.
+            salt: 0 for the published sessions, else fresh ones.
+            jobs: How many processes share the splits.
+
+        Returns:
+            The episodes of each split, in the order of the sessions.
+
+        Raises:
+            ValueError: If the folder has episodes of another policy, or the checkpoint changes.
+            OSError: If an evaluation fails; the message names its log.
+        """
+        folder.mkdir(parents=True, exist_ok=True)
+        self._check_played(folder)
+
+        def evaluate(splits: Sequence[str]) -> None:
+            where = [f"--split={','.join(splits)}", f"--out={folder}", f"--salt={salt}"]
+            arguments = ["evaluate", *self.named, *where]
+            run_module("kitchen_prefs.cli", arguments, folder / f"{splits[0]}.log", "Playing")
+
+        with ThreadPoolExecutor(jobs) as pool:
+            list(pool.map(evaluate, shares(jobs)))
+        self._check_played(folder)
+        return {
+            split: sorted(read_episodes(folder / f"{split}.jsonl"), key=lambda one: one.session)
+            for split in TEST_SPLITS
+        }
+
+    def _check_played(self, folder: Path) -> None:
+        way_out = "delete that folder, or give another --out."
+        for header in folder.glob("*.header.json"):
+            if read_header(header, way_out)["fingerprint"] != self.loaded_policy.fingerprint:
+                raise ValueError(f"{folder} holds episodes of another policy; {way_out}")
+
+
+def shares(jobs: int) -> list[list[str]]:
+    """The test splits, shared out so that each process plays about as many sessions.
+
+    A process for each split would load LeRobot six times, which takes longer than some splits.
+    """
+    shared: list[list[str]] = [[] for _ in range(min(jobs, len(TEST_SPLITS)))]
+    sessions = {split: get_split(split).sessions for split in TEST_SPLITS}
+    for split in sorted(TEST_SPLITS, key=lambda split: -sessions[split]):
+        min(shared, key=lambda of_process: sum(sessions[s] for s in of_process)).append(split)
+    return shared
+
+
+def load_player(
+    path: str | None, policy_type: str | None, settings: Sequence[str], track: str
+) -> Player:
+    """Load a policy for a track of the leaderboard.
+
+    Args:
+        path: A checkpoint, see `load_policy`.
+        policy_type: The type of a policy that needs no training.
+        settings: Settings of the policy to override, as in `--policy.rule=symbolic`.
+        track: What the policy is told; on the open track it is told what it asks for.
+
+    Raises:
+        ValueError: If there is no such track, or if it cannot be loaded, see `load_policy`.
+    """
+    if track not in TRACKS:
+        raise ValueError(f"There is no track {track!r}. {suggest(track, TRACKS)}")
+    told = None if track == "open" else track
+    loaded_policy = load_policy(path, policy_type, settings_of(settings), track=told)
+    policy = f"--policy.path={path}" if path else f"--policy.type={policy_type}"
+    return Player(loaded_policy, (policy, *settings, f"--track={loaded_policy.track}"))

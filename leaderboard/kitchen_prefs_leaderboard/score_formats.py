@@ -1,0 +1,110 @@
+"""Scores as a table in the terminal, as JSON and as CSV."""
+
+import csv
+import io
+import json
+from collections.abc import Iterator, Mapping, Sequence
+
+from rich.table import Table
+from rich.text import Text
+
+from kitchen_prefs.metrics import METRICS, Interval
+from kitchen_prefs_leaderboard.scoring import Entry, rounded
+from kitchen_prefs_leaderboard.verification import Verification
+
+
+def to_tables(entry: Entry, by: str | None) -> Iterator[Table]:
+    """An entry's metrics for the terminal."""
+    title = f"{entry.submission.name}: means, and their 95 % intervals"
+    metrics = _table(title, "Split", *METRICS)
+    for split, of_split in entry.metrics.items():
+        metrics.add_row(split, *_cells(of_split))
+    yield metrics
+    if by:
+        groups = _table(f"{title}, by {by}", "Split", *METRICS)
+        for split, of_groups in entry.grouped(by).items():
+            for group, of_group in of_groups.items():
+                groups.add_row(f"{split}\n{by} {group}", *_cells(of_group))
+        yield groups
+    reasons = _table("Episodes that fell short", "Split", *next(iter(entry.failure_modes.values())))
+    for split, counts in entry.failure_modes.items():
+        reasons.add_row(split, *map(str, counts.values()))
+    yield reasons
+
+
+def to_comparison(found: Verification) -> Table:
+    """A re-run beside the replay, for the terminal."""
+    table = _table("All test splits", "Score", "Mean", "95 % interval")
+    rows = {"replayed": found.replayed, "run again": found.rerun, "fresh sessions": found.fresh}
+    for name, means in rows.items():
+        table.add_row(name, f"{means.mean:.3f}", f"{means.low:.3f} to {means.high:.3f}")
+    return table
+
+
+def to_verdict(found: Verification) -> str:
+    """What a re-run says of a submission, in a sentence."""
+    alike = f"{found.same:.0%} of the episodes went alike"
+    if found.confirmed:
+        return f"The re-run confirms the submission; {alike}."
+    where = "the same sessions" if not found.repeats else "fresh sessions"
+    return f"The re-run does NOT confirm the submission: on {where} its Score differs; {alike}."
+
+
+def to_json(entries: Sequence[Entry], by: str | None) -> str:
+    """All metrics of entries."""
+    content = [
+        {
+            "name": entry.submission.name,
+            "track": entry.submission.track,
+            "data_version": entry.submission.data_version,
+            "digest": entry.digest,
+            "splits": _tree(entry.metrics),
+            "shortcomings": entry.failure_modes,
+            **({by: _tree(entry.grouped(by))} if by else {}),
+        }
+        for entry in entries
+    ]
+    return json.dumps(content, indent=2) + "\n"
+
+
+def to_csv(entries: Sequence[Entry], by: str | None) -> str:
+    """All metrics of entries, one a line."""
+    file = io.StringIO()
+    writer = csv.writer(file, lineterminator="\n")
+    writer.writerow(["name", "track", "split", by or "group", "metric", "mean", "low", "high"])
+    for entry in entries:
+        who = [entry.submission.name, entry.submission.track]
+        for split, of_split in entry.metrics.items():
+            for name, interval in of_split.items():
+                writer.writerow([*who, split, "all", name, *rounded(interval).values()])
+        for split, of_groups in (entry.grouped(by) if by else {}).items():
+            for group, of_group in of_groups.items():
+                for name, interval in of_group.items():
+                    writer.writerow([*who, split, group, name, *rounded(interval).values()])
+    return file.getvalue()
+
+
+def _table(title: str, *heads: str) -> Table:
+    """A table that fits into 80 columns; a title is a stranger's and no markup."""
+    table = Table(title=Text(title), box=None, padding=(0, 1, 0, 0))
+    first, *rest = heads
+    table.add_column(first, no_wrap=True)
+    for head in rest:
+        table.add_column(head, justify="right", min_width=9)  # "forbidden"
+    return table
+
+
+def _cells(metrics: Mapping[str, Interval]) -> list[str]:
+    return [f"{of.mean:.3f}\n{_short(of.low)} {_short(of.high)}" for of in metrics.values()]
+
+
+def _short(value: float) -> str:
+    """Two decimals, and no zero before the point."""
+    return f"{value:.2f}".replace("0.", ".", 1)
+
+
+def _tree(tree: dict) -> dict:
+    return {
+        key: rounded(value) if isinstance(value, Interval) else _tree(value)
+        for key, value in tree.items()
+    }

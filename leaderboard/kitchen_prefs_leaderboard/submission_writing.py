@@ -1,0 +1,106 @@
+"""Making a submission of a LeRobot policy: it plays the test splits, and its actions are kept."""
+
+import bz2
+import json
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from lerobot.configs.train import TRAIN_CONFIG_NAME
+from pydantic import ValidationError
+from tqdm import tqdm
+
+from kitchen_prefs.datasets.manifest import published_fingerprint
+from kitchen_prefs.evaluation.checkpoint_reading import find_checkpoint
+from kitchen_prefs.evaluation.policy_loading import LoadedPolicy
+from kitchen_prefs.metrics import Episode
+from kitchen_prefs.splits import DATA_VERSION, TEST_SPLITS
+from kitchen_prefs.utils.files import atomic_folder
+from kitchen_prefs_leaderboard.replay import to_jsonl, write_line
+from kitchen_prefs_leaderboard.submission_format import (
+    ACTIONS,
+    DESCRIPTION,
+    FORMAT,
+    NOT_SAID,
+    Policy,
+    Submission,
+    complaint,
+    installed_packages,
+)
+
+
+def check_replaceable(folder: Path) -> None:
+    """Make sure that nothing is lost when a submission is written there.
+
+    Raises:
+        ValueError: If something else than a submission is there.
+    """
+    known = {DESCRIPTION, *ACTIONS.values()}
+    ours = folder.is_dir() and not folder.is_symlink()
+    if folder.exists() and not (ours and {file.name for file in folder.iterdir()} <= known):
+        raise ValueError(f"{folder} is something else than a submission; give another --out.")
+
+
+def write_submission(
+    submission: Submission, played: Mapping[str, Sequence[Episode]], folder: Path
+) -> None:
+    """Write a submission, whole or not at all.
+
+    Args:
+        submission: Who acted.
+        played: The episodes of each test split, in the order of the sessions.
+        folder: The submission's; an older one there is replaced.
+    """
+    check_replaceable(folder)
+    with atomic_folder(folder) as beside:
+        for split, episodes in tqdm(played.items(), "Writing", unit="split", leave=False):
+            lines = to_jsonl([write_line(episode) for episode in episodes])
+            # A fifth smaller than gzip, and without a time in it: the same actions, the same bytes.
+            (beside / ACTIONS[split]).write_bytes(bz2.compress(lines))
+        (beside / DESCRIPTION).write_text(submission.model_dump_json(indent=2) + "\n")
+
+
+def describe(**about: Any) -> Submission:
+    """Say who acted, with the versions that are installed here.
+
+    Args:
+        about: The fields of a `Submission` that only its author knows.
+
+    Raises:
+        ValueError: If one of them is not as the format says.
+    """
+    fingerprints = {
+        dataset: published_fingerprint(dataset)
+        for dataset in (f"dishwasher-{split}-v{DATA_VERSION}" for split in TEST_SPLITS)
+    }
+    here = {
+        "format": FORMAT,
+        "data_version": DATA_VERSION,
+        "fingerprints": fingerprints,
+        "packages": installed_packages(),
+    }
+    try:
+        return Submission.model_validate(here | about)
+    except ValidationError as error:
+        raise ValueError(f"This cannot be submitted: {complaint(error)}") from error
+
+
+def policy_of(loaded_policy: LoadedPolicy) -> Policy:
+    """What a submission says of a LeRobot policy."""
+    policy = loaded_policy.policy
+    return Policy(
+        type=policy.config.type,
+        parameters=sum(weight.numel() for weight in policy.parameters()),
+        checkpoint=loaded_policy.fingerprint,
+    )
+
+
+def training_of(path: str) -> str:
+    """What lerobot-train left of a training in a checkpoint, in a few words."""
+    file = find_checkpoint(path) / TRAIN_CONFIG_NAME
+    try:
+        config = json.loads(file.read_text())
+        data = config["dataset"]["repo_id"]
+        return f"{config['steps']} steps of {config['batch_size']} decisions of {data}"
+    except (OSError, ValueError, KeyError, TypeError):  # another program's file, or none
+        return NOT_SAID

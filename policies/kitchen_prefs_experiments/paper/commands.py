@@ -1,0 +1,75 @@
+"""The commands `kitchen-prefs reproduce` and `kitchen-prefs results`.
+
+LeRobot and altair take seconds to import, so the commands import what needs them when they run.
+"""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from kitchen_prefs.utils.files import atomic_file, make_folder
+from kitchen_prefs_experiments.paper.paper_tables import TABLES, get_table
+from kitchen_prefs_experiments.paper.table_types import Curves
+
+app = typer.Typer()
+
+Results = Annotated[Path, typer.Option(help="The folder of the tables' JSON and pictures.")]
+
+
+@app.command()
+def reproduce(
+    tables: Annotated[list[str], typer.Argument(metavar="TABLE", help=f"Of {', '.join(TABLES)}.")],
+    budget: Annotated[
+        int, typer.Option(help="How many decisions each training of a table sees.", min=1)
+    ] = 32_000,  # 1,000 steps of 32: some 15 minutes on two cores
+    jobs: Annotated[
+        int, typer.Option(help="How many policies are trained at once, a core for each.", min=1)
+    ] = 2,
+    out: Annotated[Path, typer.Option(help="The folder of the runs and episodes.")] = Path(
+        "outputs/reproduce"
+    ),
+    results: Results = Path("docs/results"),
+) -> None:
+    """Re-run tables of the paper: train what they need, evaluate it, write JSON and a picture.
+
+    What is finished is kept: a command that was stopped goes on where it was.
+    The table "learning" takes the recipes as they are, with runs in outputs/;
+    --budget, --jobs and --out do not concern it.
+
+    For example:
+    kitchen-prefs reproduce main counts
+    kitchen-prefs reproduce attributes --budget=32000
+    """
+    chosen = {name: get_table(name) for name in tables}
+    make_folder(out, "--out")
+    make_folder(results, "--results")
+    from kitchen_prefs_experiments.paper.figures import draw
+    from kitchen_prefs_experiments.paper.learning_curves import run_curves
+    from kitchen_prefs_experiments.paper.result_files import write_facts
+    from kitchen_prefs_experiments.paper.table_runner import run_table
+
+    for name, table in chosen.items():
+        if isinstance(table, Curves):
+            facts = run_curves(name, table)
+        else:
+            facts = run_table(name, table, budget, jobs, out)
+        write_facts(facts, results)
+        draw(table, facts, results / f"{name}.png")
+        typer.echo(f"{name} is in {results}.")
+
+
+@app.command("results")
+def write_results(results: Results = Path("docs/results")) -> None:
+    """Write docs/RESULTS.md beside the folder of the results, from what is in it alone.
+
+    For example:
+    kitchen-prefs results
+    """
+    from kitchen_prefs_experiments.paper.results_page import report
+
+    file = results.parent / "RESULTS.md"
+    text = report(results)
+    with atomic_file(file) as beside:
+        beside.write_text(text)
+    typer.echo(f"The report is {file}.")

@@ -1,0 +1,54 @@
+"""The command `kitchen-prefs reinforce`.
+
+LeRobot and torch take seconds to import, so the command imports what needs them when it runs.
+"""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+
+app = typer.Typer()
+console = Console()
+
+
+@app.command(context_settings={"allow_extra_args": True, "ignore_unknown_options": True})
+def reinforce(
+    context: typer.Context,
+    out: Annotated[Path, typer.Option(help="The folder of checkpoints and logs.")],
+    interactions: Annotated[
+        int, typer.Option(help="How many decisions are played in all.", min=1)
+    ] = 32_000,  # the paper's budget
+    recipe: Annotated[
+        str, typer.Option(help="A recipe of reinforcement learning, by name.")
+    ] = "gnn_rl",
+    mask: Annotated[
+        bool, typer.Option("--mask", help="Mask what the kitchen would refuse: an oracle.")
+    ] = False,
+) -> None:
+    """Train a policy by PPO from the paper's rewards, on the sessions of train (open track).
+
+    A command that was stopped goes on; so does a finished one that is given more --interactions.
+    The checkpoints are LeRobot's: evaluate and select take them, tensorboard reads OUT/tensorboard.
+    Any other --SETTING=VALUE overrides a setting of the recipe.
+
+    For example:
+    kitchen-prefs reinforce --interactions=32000 --out=outputs/gnn_rl
+    kitchen-prefs evaluate --split=seen --out=outputs/gnn_rl/evaluation
+    --policy.path=outputs/gnn_rl/checkpoints/last/pretrained_model
+    """
+    from lerobot.utils.import_utils import register_third_party_plugins
+
+    from kitchen_prefs_experiments.reinforcement.settings import read_settings
+    from kitchen_prefs_experiments.reinforcement.training import reinforce as train
+
+    register_third_party_plugins()
+    pace = train(read_settings(recipe, context.args), interactions, mask, out)
+    if pace.interactions:
+        console.print(
+            f"{pace.interactions} decisions in {pace.seconds:.0f} s: "
+            f"{pace.interactions / pace.seconds:.0f} a second, "
+            f"{pace.interactions / pace.playing:.0f} while playing."
+        )
+    console.print(f"The checkpoint is {out}/checkpoints/last/pretrained_model.")

@@ -1,0 +1,141 @@
+"""PPO around a LeRobot policy: its scores are the logits, and a value head stands beside them.
+
+observation - policy.score_rows - scores (B, N) - the distribution over rows
+- summary (B, d) - linear - the value
+"""
+
+from typing import Any, Protocol
+
+import torch
+from gymnasium import spaces
+from sb3_contrib import MaskablePPO
+from sb3_contrib.common.maskable.policies import MaskableActorCriticPolicy
+from stable_baselines3 import PPO
+from stable_baselines3.common.policies import ActorCriticPolicy
+from stable_baselines3.common.torch_layers import BaseFeaturesExtractor
+from stable_baselines3.common.type_aliases import Schedule
+from stable_baselines3.common.vec_env import VecEnv
+from torch import Tensor, nn
+
+from kitchen_prefs.envs.lerobot_env import FEATURES_MAP
+from kitchen_prefs.instances import CAPACITY
+from kitchen_prefs_experiments.reinforcement.settings import Settings
+
+
+class RowScores(Protocol):
+    """What a policy makes of B sets: a score for every row, (B, N), and a summary, (B, d)."""
+
+    @property
+    def scores(self) -> Tensor:
+        """The scores, (B, N)."""
+
+    @property
+    def summary(self) -> Tensor:
+        """The summaries, (B, d)."""
+
+
+class RowScorer(Protocol):
+    """A policy that can learn from rewards."""
+
+    @property
+    def summary_size(self) -> int:
+        """The size d of a summary."""
+
+    def score_rows(self, batch: dict[str, Tensor], failed: Tensor) -> RowScores:
+        """Judge the rows of sets, none of which has failed before."""
+
+
+class RowScoresExtractor(BaseFeaturesExtractor):
+    """The policy's scores and summaries, side by side, (B, N + d)."""
+
+    def __init__(self, observation_space: spaces.Dict, policy: Any) -> None:
+        """Take the policy, a `RowScorer`, as it is: what learns is what is saved."""
+        super().__init__(observation_space, CAPACITY + policy.summary_size)
+        self.policy = policy
+
+    def forward(self, observations: dict[str, Tensor]) -> Tensor:
+        """Judge what B environments show."""
+        batch = {FEATURES_MAP[key]: value for key, value in observations.items()}
+        nothing = torch.zeros_like(observations["instances"][..., 0], dtype=torch.bool)  # (B, N)
+        row_scores = self.policy.score_rows(batch, nothing)
+        return torch.cat([row_scores.scores, row_scores.summary], dim=1)
+
+
+class SplitFeatures(nn.Module):
+    """Takes `RowScoresExtractor` apart again: where stable-baselines3 has two small networks."""
+
+    def __init__(self, features_dim: int) -> None:
+        """Know the sizes of the two parts."""
+        super().__init__()
+        self.latent_dim_pi = CAPACITY
+        self.latent_dim_vf = features_dim - CAPACITY
+
+    def forward(self, features: Tensor) -> tuple[Tensor, Tensor]:
+        """Scores and summaries, (B, N) and (B, d)."""
+        return self.forward_actor(features), self.forward_critic(features)
+
+    def forward_actor(self, features: Tensor) -> Tensor:
+        """The scores, (B, N)."""
+        return features[:, :CAPACITY]
+
+    def forward_critic(self, features: Tensor) -> Tensor:
+        """The summaries, (B, d)."""
+        return features[:, CAPACITY:]
+
+
+class _ScoresAreLogits:
+    """What both of stable-baselines3's actor-critics do differently here."""
+
+    def _build_mlp_extractor(self: Any) -> None:
+        self.mlp_extractor = SplitFeatures(self.features_dim)
+
+    def _build(self: Any, lr_schedule: Schedule) -> None:
+        super()._build(lr_schedule)  # type: ignore[misc]
+        self.action_net = nn.Identity()
+        self.optimizer = self.optimizer_class(
+            self.parameters(), lr=lr_schedule(1), **self.optimizer_kwargs
+        )
+
+
+class RowPolicy(_ScoresAreLogits, ActorCriticPolicy):  # type: ignore[misc]
+    """Chooses among all instances that are seen."""
+
+
+class MaskedRowPolicy(_ScoresAreLogits, MaskableActorCriticPolicy):  # type: ignore[misc]
+    """Chooses among those that the kitchen would carry out."""
+
+
+def make_learner(
+    settings: Settings, policy: RowScorer, environments: VecEnv, seed: int, masked: bool
+) -> PPO | MaskablePPO:
+    """Make PPO for a policy.
+
+    Args:
+        settings: PPO's constants.
+        policy: What learns.
+        environments: Where it plays.
+        seed: Of the sessions and choices.
+        masked: Whether infeasible decisions are masked.
+    """
+    constants: dict[str, Any] = {
+        "learning_rate": settings.learning_rate,
+        "n_steps": settings.steps,
+        "batch_size": settings.batch_size,
+        "n_epochs": settings.epochs,
+        "gamma": settings.discount,
+        "gae_lambda": settings.gae_lambda,
+        "clip_range": settings.clip_range,
+        "ent_coef": settings.entropy,
+        "seed": seed,
+        "device": settings.policy.device or "cpu",
+        "policy_kwargs": {
+            "features_extractor_class": RowScoresExtractor,
+            "features_extractor_kwargs": {"policy": policy},
+            "ortho_init": False,  # the network begins as it does in imitation
+            # stable-baselines3's epsilon for PPO, and the recipe's weight decay
+            "optimizer_kwargs": {"eps": 1e-5, "weight_decay": settings.weight_decay},
+        },
+    }
+    if masked:
+        return MaskablePPO(MaskedRowPolicy, environments, **constants)
+    return PPO(RowPolicy, environments, **constants)

@@ -1,0 +1,111 @@
+"""The demonstrations of the data set that is trained on, in memory."""
+
+from typing import Self
+
+import numpy as np
+import pandas as pd
+import pyarrow as pa
+from lerobot.datasets import LeRobotDataset, LeRobotDatasetMetadata
+
+from kitchen_prefs.envs.lerobot_env import OBS_INSTANCES
+from kitchen_prefs.instances import COLUMNS, EXTENTS, IS_OBJECT, IS_PLACE, POSE, PROMPT_COLUMNS
+
+PREFERENCE = "preference"
+CHOSEN_INDEX = "chosen_index"
+PLACE = slice(EXTENTS.start, POSE.stop)  # the columns of a place: the dish's extents, then the pose
+
+
+class DemonstrationStore:
+    """Whole episodes, one below the other.
+
+    Attributes:
+        rows: The rows of all decisions of all episodes, (R, 14) float32.
+        preference: The preference's label of each episode, (E,) int64. On the standard track it
+            pairs prompts with situations, and no network sees it.
+        places: All different places for dishes, chosen or not: extents and pose, (K, 10) float32.
+    """
+
+    def __init__(
+        self, rows: np.ndarray, lengths: np.ndarray, preference: np.ndarray, places: np.ndarray
+    ) -> None:
+        """Take the episodes' rows.
+
+        Args:
+            rows: The rows of all decisions of all episodes, chosen ones marked, (R, 14) float32.
+            lengths: The number of rows of each episode, (E,) int.
+            preference: The preference's label of each episode, (E,) int64.
+            places: All different places for dishes, (K, 10) float32.
+        """
+        self.rows = rows
+        self.preference = preference
+        self.places = places
+        self._of_episode = np.split(rows, np.cumsum(lengths)[:-1])
+
+    @classmethod
+    def read(cls, meta: LeRobotDatasetMetadata, chosen_only: bool) -> Self:
+        """Read a data set's episodes.
+
+        Args:
+            meta: The data set's metadata.
+            chosen_only: Whether to keep the chosen row of each decision alone.
+
+        Returns:
+            The demonstrations.
+
+        Raises:
+            ValueError: If the data set lacks a column that is read.
+        """
+        wanted = [OBS_INSTANCES, CHOSEN_INDEX, PREFERENCE, "episode_index"]
+        missing = sorted(set(wanted) - set(meta.features))
+        if missing:
+            raise ValueError(
+                f"The data set {meta.repo_id!r} has no column {missing[0]!r}, which demonstrations "
+                "have; train on a data set of kitchen_prefs."
+            )
+        frames = LeRobotDataset(meta.repo_id, root=meta.root).hf_dataset.with_format("arrow")
+        table = frames.select_columns(wanted)[:]
+        chosen, preference, episode = (_numbers(table[name]) for name in wanted[1:])
+        sets = _numbers(table[OBS_INSTANCES]).reshape(len(chosen), -1, COLUMNS)  # (T, N, 13)
+        marks = np.arange(sets.shape[1]) == chosen[:, None]  # (T, N)
+        kept = marks if chosen_only else (sets[..., IS_OBJECT] + sets[..., IS_PLACE]) > 0
+        rows = np.concatenate([sets[kept], marks[kept][:, None]], axis=1, dtype=np.float32)
+        episodes, first = np.unique(episode, return_index=True)
+        lengths = np.bincount(episode, weights=kept.sum(axis=1)).astype(int)[episodes]
+        places = pd.DataFrame(sets[sets[..., IS_PLACE] > 0][:, PLACE]).drop_duplicates()
+        return cls(rows, lengths, preference[first], np.unique(places, axis=0))
+
+    def draw(self, preference: int, excluded: np.ndarray, generator: np.random.Generator) -> int:
+        """Draw an episode of a preference.
+
+        Args:
+            preference: The preference's label.
+            excluded: Episodes that would prompt themselves; they are drawn only if there are no
+                others.
+            generator: Source of randomness.
+
+        Returns:
+            The episode's index.
+        """
+        episodes = np.flatnonzero(self.preference == preference)
+        others = np.setdiff1d(episodes, excluded)
+        return int(generator.choice(others if len(others) else episodes))
+
+    def prompts(self, episodes: list[int]) -> np.ndarray:
+        """The episodes as prompts, padded to the longest of them, (G, P, 14) float32."""
+        rows = [self._of_episode[episode] for episode in episodes]
+        prompts = np.zeros((len(rows), max(map(len, rows)), PROMPT_COLUMNS), dtype=np.float32)
+        for prompt, filled in zip(prompts, rows, strict=True):
+            prompt[: len(filled)] = filled
+        return prompts
+
+
+def _numbers(column: pa.ChunkedArray) -> np.ndarray:
+    """All numbers of a column, of however many dimensions, in one row."""
+    array = column.combine_chunks()
+    if isinstance(array, pa.ChunkedArray):
+        array = pa.concat_arrays(array.chunks)
+    if isinstance(array, pa.ExtensionArray):
+        array = array.storage
+    while pa.types.is_nested(array.type):
+        array = array.flatten()
+    return array.to_numpy(zero_copy_only=False)

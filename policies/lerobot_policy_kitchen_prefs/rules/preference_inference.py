@@ -1,0 +1,99 @@
+"""Reads a preference out of a prompt, by rule and without learning."""
+
+from collections import Counter, defaultdict
+from collections.abc import Iterator
+
+import numpy as np
+
+from kitchen_prefs import instances
+from kitchen_prefs.preferences import CATEGORIES, SEEN, TOP_CATEGORIES, Preference
+from kitchen_prefs.simulation.expert import choose
+from lerobot_policy_kitchen_prefs.rules.observed_view import Memory, Sight
+
+
+def decisions_of(prompt: np.ndarray) -> Iterator[tuple[np.ndarray, int]]:
+    """Take a prompt apart.
+
+    Args:
+        prompt: (P, 14), padded.
+
+    Yields:
+        The instance set of each decision, (n, 13), and its chosen row.
+    """
+    rows = instances.unpad(prompt)
+    starts = np.flatnonzero(np.diff(rows[:, instances.DECISION], prepend=-1))
+    for part in np.split(rows, starts[1:]):
+        yield part[:, : instances.COLUMNS], int(part[:, instances.CHOSEN].argmax())
+
+
+def symbolic_preference(prompt: np.ndarray) -> Preference:
+    """The preference that a demonstration shows.
+
+    The first rack is the one that is opened first; a category's rack is where most of its dishes
+    go; of two categories of a rack the earlier is the one that is picked while the other waits.
+    What the prompt leaves open is filled up in the order of CATEGORIES.
+
+    Args:
+        prompt: (P, 14), padded.
+
+    Returns:
+        The preference.
+    """
+    first: str | None = None
+    racks: dict[str, Counter[str]] = defaultdict(Counter)
+    picks: list[tuple[str, set[str]]] = []  # what was picked, and what waited meanwhile
+    for rows, chosen in decisions_of(prompt):
+        sight = Sight(rows)
+        if first is None and chosen in sight.racks.values():
+            first = next(rack for rack, row in sight.racks.items() if row == chosen)
+        if sight.held is not None and sight.out is not None and chosen != sight.sink:
+            racks[sight.held][sight.out] += 1
+        if sight.held is None and sight.out is not None:
+            waiting = sight.waiting()
+            if chosen in [option.choice for option in waiting]:
+                picks.append((sight.category(chosen), {option.category for option in waiting}))
+    top, bottom = _partition({c: racks[c].most_common(1)[0][0] for c in CATEGORIES if racks[c]})
+    return Preference(first or "top", _ordered(top, picks), _ordered(bottom, picks))
+
+
+def _partition(rack_of: dict[str, str]) -> tuple[list[str], list[str]]:
+    """Three categories for the top, four for the bottom; the unknown go where there is room."""
+    top = [category for category in CATEGORIES if rack_of.get(category) == "top"]
+    unknown = [category for category in CATEGORIES if category not in rack_of]
+    bottom = [category for category in CATEGORIES if rack_of.get(category) == "bottom"]
+    together = top + unknown + bottom
+    return together[:TOP_CATEGORIES], together[TOP_CATEGORIES:]
+
+
+def _ordered(categories: list[str], picks: list[tuple[str, set[str]]]) -> tuple[str, ...]:
+    before = {c: set[str]() for c in categories}
+    for picked, waiting in picks:
+        if picked in before:
+            before[picked] |= (waiting & set(categories)) - {picked}
+    for middle in categories:  # Warshall: before is transitive
+        for one in categories:
+            if middle in before[one]:
+                before[one] |= before[middle] - {one}
+    first_pick = {picked: -i for i, (picked, _) in reversed(list(enumerate(picks)))}
+    never = -len(picks)
+    return tuple(
+        sorted(categories, key=lambda c: (len(before[c]), first_pick.get(c, never)), reverse=True)
+    )
+
+
+def nearest_training_preference(prompt: np.ndarray) -> Preference:
+    """The training preference under which the expert takes most of a prompt's decisions.
+
+    Args:
+        prompt: (P, 14), padded.
+
+    Returns:
+        One of the seven; the first on a tie.
+    """
+    decisions = list(decisions_of(prompt))
+    return max(SEEN, key=lambda preference: _agreement(decisions, preference))
+
+
+def _agreement(decisions: list[tuple[np.ndarray, int]], preference: Preference) -> int:
+    memory = Memory()
+    return sum(choose(Sight(rows, memory), preference) == chosen for rows, chosen in decisions)

@@ -1,0 +1,64 @@
+import numpy as np
+import pytest
+
+from kitchen_prefs.physics.blocking import blocking_table
+from kitchen_prefs.physics.carrying import carry
+from kitchen_prefs.physics.settling import Settler, displacement
+from kitchen_prefs.simulation.placements import load_placements
+
+UPRIGHT = (1.0, 0.0, 0.0, 0.0)
+INVERTED = (0.0, 1.0, 0.0, 0.0)
+GLASS, SMALL_BOWL, BIG_BOWL = 1, 3, 4
+FREE_SPOT = (0.0875, 0.0)  # between the two rows of short tines
+
+
+def test_an_upright_glass_is_rejected_and_an_inverted_one_kept():
+    settler = Settler("glass")
+    assert settler.settle(np.array([*FREE_SPOT, 0.075, *UPRIGHT])) is None
+    rest = settler.settle(np.array([*FREE_SPOT, 0.075, *INVERTED]))
+    assert rest is not None
+    assert rest[2] == pytest.approx(0.069, abs=0.002)
+
+
+def test_a_glass_half_outside_the_rack_is_rejected():
+    assert Settler("glass").settle(np.array([0.30, 0.0, 0.20, *INVERTED])) is None
+
+
+def test_a_plate_lying_flat_is_rejected():
+    assert Settler("big plate").settle(np.array([0.0, 0.0, 0.15, *UPRIGHT])) is None
+
+
+def test_the_same_seed_settles_the_same_pose():
+    first, second = (
+        next(Settler("small bowl").settled(np.random.default_rng(5))) for _ in range(2)
+    )
+    assert np.array_equal(first, second)
+
+
+def test_displacement_measures_shift_and_turn():
+    quarter = (np.sqrt(0.5), 0.0, 0.0, np.sqrt(0.5))
+    shift, turn = displacement(np.array([0.0, 0, 0, *UPRIGHT]), np.array([0.0, 3, 4, *quarter]))
+    assert shift == pytest.approx(5.0)
+    assert turn == pytest.approx(np.pi / 2)
+
+
+def test_neighbours_block_and_distant_dishes_do_not():
+    def glass(x: float) -> list[float]:
+        return [x, 0.0, 0.069, *INVERTED]
+
+    blocks = blocking_table(np.full(3, GLASS), np.array([glass(0.0), glass(0.101), glass(0.105)]))
+    assert blocks.tolist() == [[True, True, False], [True, True, True], [False, True, True]]
+
+
+def test_a_bowl_may_not_nest_in_another():
+    nested = np.array([[0.0, 0.0, 0.05, *UPRIGHT], [0.0, 0.0, 0.10, *UPRIGHT]])
+    assert blocking_table(np.array([BIG_BOWL, SMALL_BOWL]), nested).all()
+
+
+def test_a_carried_dish_stays_and_a_badly_stood_one_does_not():
+    placements = load_placements()
+    index = int(np.argmax(placements.category == GLASS))
+    good = np.concatenate([placements.position[index], placements.quaternion[index]])
+    on_a_tine = np.array([0.145, 0.0, 0.15, *INVERTED])
+    assert carry(["glass"], good[None].astype(float)).tolist() == [True]
+    assert carry(["glass"], on_a_tine[None]).tolist() == [False]

@@ -1,0 +1,40 @@
+import json
+
+import numpy as np
+import pytest
+
+from kitchen_prefs.utils.files import atomic_file, make_folder, write_json
+
+
+def test_what_is_there_stays_until_the_new_file_is_whole(tmp_path):
+    path = tmp_path / "arrays.npz"
+    with atomic_file(path) as beside:
+        np.savez(beside, numbers=np.arange(3))
+    whole = path.read_bytes()
+    with pytest.raises(KeyboardInterrupt):
+        write_half(path)
+    assert path.read_bytes() == whole
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def write_half(path):
+    with atomic_file(path) as beside:
+        beside.write_bytes(b"half")
+        raise KeyboardInterrupt
+
+
+def test_json_is_written_readably(tmp_path):
+    write_json(tmp_path / "a.json", {"b": [1]})
+    text = (tmp_path / "a.json").read_text()
+    assert json.loads(text) == {"b": [1]}
+    assert text.endswith("}\n")
+    assert len(text.splitlines()) > 1
+
+
+def test_a_folder_is_made_with_those_above_it(tmp_path):
+    make_folder(tmp_path / "a" / "b", "--out")
+    make_folder(tmp_path / "a" / "b", "--out")
+    assert list((tmp_path / "a" / "b").iterdir()) == []
+    (tmp_path / "file").touch()
+    with pytest.raises(OSError, match=r"file cannot be written; give another --cards\."):
+        make_folder(tmp_path / "file", "--cards")

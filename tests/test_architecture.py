@@ -1,0 +1,196 @@
+"""The graph of rooms: which room imports which. A new arrow fails here until it is drawn here."""
+
+import ast
+from graphlib import TopologicalSorter
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+PACKAGES = {
+    "kitchen_prefs": ROOT / "kitchen_prefs",
+    "lerobot_policy_kitchen_prefs": ROOT / "policies/lerobot_policy_kitchen_prefs",
+    "kitchen_prefs_experiments": ROOT / "policies/kitchen_prefs_experiments",
+    "kitchen_prefs_leaderboard": ROOT / "leaderboard/kitchen_prefs_leaderboard",
+}
+
+# The benchmark, from the bottom up. The nouns that all share are modules, the rooms are folders.
+BENCHMARK = {
+    "utils": "",
+    "preferences": "",
+    "instances": "",
+    "metrics": "",
+    "splits": "utils",
+    "simulation": "preferences splits",
+    "physics": "preferences simulation splits utils",
+    "rendering": "physics preferences simulation",
+    "envs": "instances metrics preferences rendering simulation splits utils",
+    "datasets": "envs instances metrics preferences simulation splits utils",
+    "evaluation": "envs metrics simulation splits utils",
+    "cli": "datasets evaluation physics",
+    "__init__": "datasets",
+}
+# What stands on it. An arrow into the benchmark names its room, one within a package only the room.
+POLICIES = {
+    "common": "kitchen_prefs.envs kitchen_prefs.instances",
+    "ttp": "common kitchen_prefs.envs kitchen_prefs.instances kitchen_prefs.simulation",
+    "gnn": "common kitchen_prefs.envs kitchen_prefs.instances kitchen_prefs.preferences",
+    "rules": (
+        "kitchen_prefs.envs kitchen_prefs.instances kitchen_prefs.preferences "
+        "kitchen_prefs.simulation kitchen_prefs.utils"
+    ),
+    "__init__": "gnn rules ttp kitchen_prefs.envs",
+}
+EXPERIMENTS = {
+    "recipes": "kitchen_prefs.utils",
+    "quickstart": (
+        "recipes kitchen_prefs.datasets kitchen_prefs.envs kitchen_prefs.evaluation "
+        "kitchen_prefs.metrics kitchen_prefs.rendering kitchen_prefs.splits kitchen_prefs.utils"
+    ),
+    "reinforcement": (
+        "recipes kitchen_prefs.envs kitchen_prefs.evaluation kitchen_prefs.instances "
+        "kitchen_prefs.metrics kitchen_prefs.simulation kitchen_prefs.utils"
+    ),
+    "paper": (
+        "recipes kitchen_prefs.datasets kitchen_prefs.evaluation kitchen_prefs.metrics "
+        "kitchen_prefs.splits kitchen_prefs.utils"
+    ),
+    "__init__": "",
+}
+LEADERBOARD = {
+    "submission_format": "kitchen_prefs.envs kitchen_prefs.splits",
+    "submission_reading": "submission_format kitchen_prefs.splits",
+    "replay": (
+        "submission_format submission_reading kitchen_prefs.envs kitchen_prefs.instances "
+        "kitchen_prefs.metrics kitchen_prefs.simulation"
+    ),
+    "scoring": (
+        "replay submission_format submission_reading kitchen_prefs.datasets "
+        "kitchen_prefs.metrics kitchen_prefs.splits"
+    ),
+    "policy_runs": (
+        "submission_format kitchen_prefs.evaluation kitchen_prefs.metrics "
+        "kitchen_prefs.splits kitchen_prefs.utils"
+    ),
+    "submission_writing": (
+        "replay submission_format kitchen_prefs.datasets kitchen_prefs.evaluation "
+        "kitchen_prefs.metrics kitchen_prefs.splits kitchen_prefs.utils"
+    ),
+    "verification": (
+        "policy_runs scoring submission_format kitchen_prefs.envs kitchen_prefs.metrics "
+        "kitchen_prefs.utils"
+    ),
+    "ranking": "scoring submission_format verification",
+    "score_formats": "scoring verification kitchen_prefs.metrics",
+    "hub_upload": "scoring submission_reading kitchen_prefs.splits kitchen_prefs.utils",
+    "page": (
+        "ranking scoring kitchen_prefs.metrics kitchen_prefs.preferences "
+        "kitchen_prefs.simulation kitchen_prefs.splits kitchen_prefs.utils"
+    ),
+    "commands": (
+        "hub_upload page policy_runs ranking score_formats scoring submission_format "
+        "submission_writing verification kitchen_prefs.utils"
+    ),
+    "__init__": "",
+}
+
+
+def graph(package, arrows):
+    """Room -> the rooms that it may import, all by their full names."""
+    full = {room: f"{package}.{room}" for room in arrows}
+    return {
+        full[room]: {full.get(name, name) for name in targets.split()}
+        for room, targets in arrows.items()
+    }
+
+
+ALLOWED = (
+    graph("kitchen_prefs", BENCHMARK)
+    | graph("lerobot_policy_kitchen_prefs", POLICIES)
+    | graph("kitchen_prefs_experiments", EXPERIMENTS)
+    | graph("kitchen_prefs_leaderboard", LEADERBOARD)
+)
+
+
+def module_of(package, path):
+    relative = path.relative_to(PACKAGES[package]).with_suffix("")
+    return ".".join((package, *relative.parts))
+
+
+MODULES = {
+    module_of(package, path): path
+    for package, folder in PACKAGES.items()
+    for path in sorted(folder.rglob("*.py"))
+}
+FOLDERS = {
+    f"{package}.{path.name}" for package, root in PACKAGES.items() for path in root.glob("*/")
+}
+
+
+def room_of(module):
+    """The room of a module: the folder or the file that stands directly in its package."""
+    return ".".join(module.split(".")[:2])
+
+
+def imported_names(module):
+    """All that a module imports, at its top or inside functions, by full names."""
+    package = module.rpartition(".")[0].split(".")
+    for node in ast.walk(ast.parse(MODULES[module].read_text())):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            parent = package[: len(package) - node.level + 1] if node.level else []
+            source = ".".join([*parent, *([node.module] if node.module else [])])
+            yield from (f"{source}.{alias.name}" for alias in node.names)
+
+
+def imported_modules(module):
+    """The project's own modules that a module imports or takes names from."""
+    for name in imported_names(module):
+        for candidate in (name, f"{name}.__init__", name.rpartition(".")[0]):
+            if candidate in MODULES or f"{candidate}.__init__" in MODULES:
+                yield candidate if candidate in MODULES else f"{candidate}.__init__"
+                break
+
+
+ARROWS = {
+    (room_of(module), room_of(imported))
+    for module in MODULES
+    for imported in imported_modules(module)
+    if room_of(module) != room_of(imported)
+}
+
+
+def test_every_room_is_drawn():
+    assert {room_of(module) for module in MODULES} == set(ALLOWED)
+
+
+def test_every_arrow_is_drawn():
+    drawn = {(room, target) for room, targets in ALLOWED.items() for target in targets}
+    new, gone = sorted(ARROWS - drawn), sorted(drawn - ARROWS)
+    assert not new, f"new arrows, draw them here if they are meant: {new}"
+    assert not gone, f"arrows that no import needs any more: {gone}"
+
+
+def test_no_arrow_points_upwards():
+    assert list(TopologicalSorter(ALLOWED).static_order())
+
+
+def test_no_modules_import_each_other():
+    own = {module: set(imported_modules(module)) - {module} for module in MODULES}
+    assert len(list(TopologicalSorter(own).static_order())) == len(MODULES)
+
+
+@pytest.mark.parametrize("module", MODULES)
+def test_only_physics_and_rendering_know_mujoco(module):
+    if room_of(module) not in ("kitchen_prefs.physics", "kitchen_prefs.rendering"):
+        assert "mujoco" not in {name.split(".")[0] for name in imported_names(module)}
+
+
+LEROBOT = ("kitchen_prefs.envs.lerobot_env", "kitchen_prefs.evaluation", "kitchen_prefs.datasets")
+
+
+@pytest.mark.parametrize("module", [name for name in MODULES if name.startswith("kitchen_prefs.")])
+def test_the_kitchen_and_its_environment_import_neither_lerobot_nor_torch(module):
+    if not module.startswith(LEROBOT):
+        assert not {"lerobot", "torch"} & {name.split(".")[0] for name in imported_names(module)}
