@@ -134,22 +134,22 @@ def test_lerobot_eval_gives_the_expert_full_success(home):
 
 @pytest.mark.slow
 def test_lerobots_act_trains_and_plays_unchanged(home):
-    train_and_play(home, "act", "--policy.dim_model=32", "--policy.dim_feedforward=32")
+    train_and_roll_out(home, "act", "--policy.dim_model=32", "--policy.dim_feedforward=32")
 
 
 @pytest.mark.slow
 def test_lerobots_diffusion_trains_and_plays_unchanged(home):
     pytest.importorskip("diffusers", reason="wants `uv run --extra diffusion`")
     small = ("--policy.down_dims=[16, 32]", "--policy.num_inference_steps=2")
-    train_and_play(home, "diffusion", *small)
+    train_and_roll_out(home, "diffusion", *small)
 
 
 @pytest.mark.slow
 def test_ttp_trains_and_plays_on_the_final_state_alone(home):
-    train_and_play(home, "ttp_final", *SMALL_TTP, "--policy.dim_feedforward=32")
+    train_and_roll_out(home, "ttp_final", *SMALL_TTP, "--policy.dim_feedforward=32")
 
 
-def train_and_play(home, recipe, *small):
+def train_and_roll_out(home, recipe, *small):
     config = f"--config_path={recipe_file(recipe)}"
     data, output = f"--dataset.repo_id=kitchen_prefs/{DATASET}", f"--output_dir={home / recipe}"
     log = run(home, TRAIN, config, data, output, *small, "--batch_size=4", "--steps=2", *COMMON)
