@@ -145,7 +145,7 @@ def test_lerobots_diffusion_trains_and_plays_unchanged(home):
 
 
 @pytest.mark.slow
-def test_ttp_trains_and_plays_on_the_final_state_alone(home):
+def test_ttp_trains_and_rolls_out_on_the_final_state_alone(home):
     train_and_roll_out(home, "ttp_final", *SMALL_TTP, "--policy.dim_feedforward=32")
 
 
@@ -154,14 +154,14 @@ def train_and_roll_out(home, recipe, *small):
     data, output = f"--dataset.repo_id=kitchen_prefs/{DATASET}", f"--output_dir={home / recipe}"
     log = run(home, TRAIN, config, data, output, *small, "--batch_size=4", "--steps=2", *COMMON)
     assert "step:2" in log
-    played = f"--policy.path={home / recipe / 'checkpoints' / 'last' / 'pretrained_model'}"
+    policy = f"--policy.path={home / recipe / 'checkpoints' / 'last' / 'pretrained_model'}"
     out = f"--out={home / recipe / 'evaluation'}"
-    run(home, "kitchen_prefs.cli", "evaluate", played, "--split=noisy", out, "--batch-size=30")
+    run(home, "kitchen_prefs.cli", "evaluate", policy, "--split=noisy", out, "--batch-size=30")
     assert len(read_episodes(home / recipe / "evaluation" / "noisy.jsonl")) == 60
 
 
 @pytest.mark.slow
-def test_the_graph_network_resumes_and_plays_on_the_privileged_track(home):
+def test_the_graph_network_resumes_and_rolls_out_on_the_privileged_track(home):
     recipe = f"--config_path={recipe_file('gnn_tuned')}"
     data, output = f"--dataset.repo_id=kitchen_prefs/{DATASET}", f"--output_dir={home / 'gnn'}"
     sizes = ("--policy.dim=16", "--batch_size=4", "--steps=2")
@@ -169,8 +169,8 @@ def test_the_graph_network_resumes_and_plays_on_the_privileged_track(home):
     checkpoint = home / "gnn" / "checkpoints" / "last" / "pretrained_model"
     config = f"--config_path={checkpoint / 'train_config.json'}"
     assert "step:3" in run(home, TRAIN, config, "--resume=true", "--steps=3")
-    played, out = f"--policy.path={checkpoint}", f"--out={home / 'gnn-evaluation'}"
-    run(home, "kitchen_prefs.cli", "evaluate", played, "--split=noisy", out, "--batch-size=30")
+    policy, out = f"--policy.path={checkpoint}", f"--out={home / 'gnn-evaluation'}"
+    run(home, "kitchen_prefs.cli", "evaluate", policy, "--split=noisy", out, "--batch-size=30")
     summary = json.loads((home / "gnn-evaluation" / "noisy.json").read_text())
     assert summary["episodes"] == 60
     assert summary["conditions"]["track"] == "privileged"

@@ -119,12 +119,12 @@ class GNNPolicy(PreTrainedPolicy):
             ValueError: If the sets or the labels are missing.
         """
         self.eval()
-        noisy_sets, sets = observed(batch, OBS_INSTANCES), self._denoised(batch)  # (B, N, 13) each
+        raw_sets, sets = observed(batch, OBS_INSTANCES), self._denoised(batch)  # (B, N, 13) each
         scores = self.score_rows(batch, self._failed_choices.find(sets)).scores  # (B, N)
         choices = sample(scores) if self.config.sample else scores.argmax(dim=1)  # (B,)
         environments = torch.arange(len(sets), device=sets.device)
         self._failed_choices.record(sets[environments, choices])
-        return noisy_sets[environments, choices][:, POSE]
+        return raw_sets[environments, choices][:, POSE]
 
     def predict_action_chunk(self, batch: dict[str, Tensor], **_: Any) -> Tensor:
         """The action as a chunk of one, (B, 1, 7)."""

@@ -57,6 +57,16 @@ class RowScores(NamedTuple):
 class GNNetwork(nn.Module):
     """Graph attention over the fully connected graph of the visible instances.
 
+        scores (B, N)
+          ▲
+        correction by collisions and failed choices, where configured
+          ▲
+        readout of each node, where configured with the summary of all nodes (B, d)
+          ▲
+        layers of graph attention (B, N, d)
+          ▲
+        attributes of the instance || one-hot of the preference, projected (B, N, d)
+
     `clashes` and `failures` are the names of weights in checkpoints.
     """
 

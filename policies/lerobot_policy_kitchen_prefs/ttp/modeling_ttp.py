@@ -156,23 +156,27 @@ class TTPPolicy(PreTrainedPolicy):
             ValueError: If the sets or, on the first call, the prompts are missing.
         """
         self.eval()
-        noisy_sets = observed(batch, OBS_INSTANCES)  # (B, N, 13)
-        sets = self.recognition(noisy_sets) if self.recognition else noisy_sets
+        raw_sets = observed(batch, OBS_INSTANCES)  # (B, N, 13)
+        sets = self.recognition(raw_sets) if self.recognition else raw_sets
         if self._preference is None:
             self._preference = self._encode(split_prompts(observed(batch, OBS_PROMPT)))
-        prompt_of = torch.arange(len(self._preference.features), device=sets.device)  # (B V,)
-        environments = torch.arange(len(sets), device=sets.device)  # (B,)
-        repeated = environments.repeat_interleave(len(prompt_of) // len(sets))  # (B V,)
         situations = Situations(sets, self._failed_choices.find(sets), self._history.update(sets))
-        scores = self._score(situations.select(repeated), self._preference, prompt_of)  # (B V, M)
-        of_prompts = scores.log_softmax(dim=1).unflatten(0, (len(sets), -1))  # (B, V, M)
-        choices = of_prompts.mean(dim=1).argmax(dim=1)  # (B,)
+        choices = self._log_probabilities(situations, self._preference).argmax(dim=1)  # (B,)
+        environments = torch.arange(len(sets), device=sets.device)  # (B,)
         self._failed_choices.record(sets[environments, choices])
-        return noisy_sets[environments, choices][:, POSE]
+        return raw_sets[environments, choices][:, POSE]
 
     def predict_action_chunk(self, batch: dict[str, Tensor], **_: Any) -> Tensor:
         """The action as a chunk of one, (B, 1, 7)."""
         return self.select_action(batch)[:, None]
+
+    def _log_probabilities(self, situations: Situations, preference: Tokens) -> Tensor:
+        """The log-probabilities of rows, the mean of V prompts for each of B situations, (B, M)."""
+        prompt_of = torch.arange(len(preference.features), device=preference.features.device)
+        situation_of = prompt_of // (len(prompt_of) // len(situations.sets))  # (B V,)
+        scores = self._score(situations.select(situation_of), preference, prompt_of)  # (B V, M)
+        log_probabilities = scores.log_softmax(dim=1)  # (B V, M)
+        return log_probabilities.unflatten(0, (len(situations.sets), -1)).mean(dim=1)
 
     # Both ------------------------------------------------------------------------------------
 
