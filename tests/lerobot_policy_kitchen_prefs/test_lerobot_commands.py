@@ -86,7 +86,7 @@ def test_ttp_fine_tunes_from_a_checkpoint(home, trained):
 
 
 @pytest.mark.slow
-def test_lerobot_eval_plays_a_checkpoint(home, trained):
+def test_lerobot_eval_rolls_out_a_checkpoint(home, trained):
     out = home / "eval"
     run(
         home,
@@ -105,7 +105,7 @@ def test_lerobot_eval_plays_a_checkpoint(home, trained):
 
 
 @pytest.mark.slow
-def test_evaluate_plays_a_checkpoint_and_the_expert(home, trained):
+def test_evaluate_rolls_out_a_checkpoint_and_the_expert(home, trained):
     checkpoint = f"--policy.path={trained}/checkpoints/000004/pretrained_model"
     for policy in ((checkpoint,), ("--policy.type=rules", "--policy.rule=expert")):
         out = home / policy[-1].replace("/", "-")
@@ -133,12 +133,12 @@ def test_lerobot_eval_gives_the_expert_full_success(home):
 
 
 @pytest.mark.slow
-def test_lerobots_act_trains_and_plays_unchanged(home):
+def test_lerobots_act_trains_and_rolls_out_unchanged(home):
     train_and_roll_out(home, "act", "--policy.dim_model=32", "--policy.dim_feedforward=32")
 
 
 @pytest.mark.slow
-def test_lerobots_diffusion_trains_and_plays_unchanged(home):
+def test_lerobots_diffusion_trains_and_rolls_out_unchanged(home):
     pytest.importorskip("diffusers", reason="wants `uv run --extra diffusion`")
     small = ("--policy.down_dims=[16, 32]", "--policy.num_inference_steps=2")
     train_and_roll_out(home, "diffusion", *small)
