@@ -9,6 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from short_splits import short_splits
 
 from kitchen_prefs.cli import command_line
 from kitchen_prefs.datasets.manifest import published_fingerprint
@@ -21,6 +22,7 @@ from kitchen_prefs_leaderboard.submission_format import ACTIONS, installed_packa
 from kitchen_prefs_leaderboard.submission_writing import policy_of, training_of
 from kitchen_prefs_leaderboard.verification import read_verifications
 
+SHORT_SPLITS = Path(__file__).parents[1] / "short_splits_of_programs"
 CHECKPOINT = Path(__file__).parents[2] / "policies" / "checkpoints" / "ttp_quick"
 SYMBOLIC = ("--policy.type=rules", "--policy.rule=symbolic")
 SUBMIT = (
@@ -28,15 +30,17 @@ SUBMIT = (
     *("--author=A. Person", "--author=B. Person", *SYMBOLIC),
 )
 
+pytestmark = pytest.mark.usefixtures("few_sessions")
+
 
 @pytest.fixture(scope="module")
-def submitted(few_sessions, tmp_path_factory):
+def submitted(tmp_path_factory):
     """What the program itself submits, and beside it the episodes that it played."""
     out = tmp_path_factory.mktemp("submit") / "symbolic"
     done = subprocess.run(
         [sys.executable, "-m", "kitchen_prefs.cli", *SUBMIT, f"--out={out}", "--jobs=2"],
         check=False,
-        env={**os.environ, "PYTHONPATH": str(few_sessions)},
+        env={**os.environ, "PYTHONPATH": str(SHORT_SPLITS)},
         capture_output=True,
         text=True,
     )
@@ -48,11 +52,12 @@ def submitted(few_sessions, tmp_path_factory):
 @pytest.fixture(scope="module")
 def entry(submitted):
     """That submission, replayed."""
-    return score_submissions([submitted], 2)[0]
+    with short_splits():
+        return score_submissions([submitted], 2)[0]
 
 
 @pytest.fixture
-def here(few_sessions, monkeypatch):
+def here(monkeypatch):
     """Lets splits be played in this process, as another would have to load LeRobot."""
 
     def run_module(module, arguments, log, name):
@@ -174,6 +179,7 @@ def test_a_link_is_not_replaced(kitchen_prefs, tmp_path):
     assert "is something else than a submission; give another --out." in said
 
 
+@pytest.mark.slow
 def test_episodes_of_another_policy_are_not_submitted(submitted, here, kitchen_prefs, tmp_path):
     header = (episodes_of(submitted) / "seen.header.json").read_text()
     kept = episodes_of(tmp_path / "out")
