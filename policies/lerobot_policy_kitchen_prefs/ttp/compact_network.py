@@ -167,7 +167,7 @@ class OutputPointer(nn.Module):
 
 
 class CompactNetwork(TTPNetwork):
-    """The paper's network with any of the departures above.
+    """The paper's network with any of the departures above, here with all of them.
 
         scores (B, N)
           ▲
@@ -177,11 +177,11 @@ class CompactNetwork(TTPNetwork):
           ▲
         f_td with geometric attention and pre-norm ◄─── gamma
           ▲
-        failed choices marked
+        embedding of failed choices added
           ▲
-        f_e of the places, or of the objects where a decision picks
+        f_e of the situation; with a collision model, place decisions attend to places alone
 
-    `clashes` and `failures` are the names of weights in checkpoints.
+    `clashes` (the collision model) and `failures` are the names of weights in checkpoints.
     """
 
     def __init__(self, config: TTPConfig) -> None:
@@ -193,7 +193,8 @@ class CompactNetwork(TTPNetwork):
         self.pointer = OutputPointer(config.dim) if config.pointer == "outputs" else None
         self.failures = FailureEmbedding(config.dim) if config.failures else None
         self.clashes = CollisionModel() if config.clashes else None
-        self.hidden_of_situations = self.hidden + [DECISION] * (not config.situation_time)
+        time = [] if config.situation_time else [DECISION]
+        self.hidden_of_situations = [*self.hidden, *time]
 
     def decide(self, situations: Situations, preference: Tokens, prompt_of: Tensor) -> Tensor:
         """Score the rows of situations; arguments and result are those of `TTPNetwork.decide`."""
@@ -245,12 +246,12 @@ class CompactNetwork(TTPNetwork):
 
 
 def layer_factories(config: TTPConfig) -> tuple[partial[EncoderLayer], partial[DecoderLayer]]:
-    """What makes the layers of f_te and of f_td."""
+    """The factories of the layers of f_te and of f_td."""
     residual = PreNormResidual if config.pre_norm else Residual
     if not config.geometric_attention:
         return partial(EncoderLayer, residual=residual), partial(DecoderLayer, residual=residual)
     self_attention = partial(GeometricAttention, initial=[SIMILAR, NEAR, NEAREST_OBJECTS])
-    half = (config.n_heads + 1) // 2  # of the heads find what is similar in the prompt
+    half = (config.n_heads + 1) // 2  # these heads attend to similar instances in the prompt
     cross_attention = partial(GeometricAttention, initial=[SIMILAR] * half)
     return (
         partial(EncoderLayer, self_attention=self_attention, residual=residual),
