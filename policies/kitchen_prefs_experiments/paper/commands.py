@@ -61,15 +61,18 @@ def reproduce(
 
 @app.command("results")
 def write_results(results: Results = Path("docs/results")) -> None:
-    """Write docs/RESULTS.md beside the folder of the results, from what is in it alone.
+    """Write the pages and pictures of the results, from what the folder holds alone.
 
     For example:
     kitchen-prefs results
     """
-    from kitchen_prefs_experiments.paper.results_page import report
+    from kitchen_prefs_experiments.paper.figures import draw
+    from kitchen_prefs_experiments.paper.result_files import read_facts
+    from kitchen_prefs_experiments.paper.results_page import pages
 
-    file = results.parent / "RESULTS.md"
-    text = report(results)
-    with atomic_file(file) as beside:
-        beside.write_text(text)
-    typer.echo(f"The report is {file}.")
+    for name, text in pages(results).items():
+        with atomic_file(results / f"{name}.md") as beside:
+            beside.write_text(text)
+    for name, facts in read_facts(results).items():
+        draw(TABLES[name], facts, results / f"{name}.png")
+    typer.echo(f"The pages are in {results}; index.md is the overview.")
