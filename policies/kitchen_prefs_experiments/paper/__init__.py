@@ -13,6 +13,6 @@ running    all that a table needs, and the facts that come of it
 learning   the same for the learning curves of the recipes
 facts      results/TABLE.json, written and read
 pictures   results/TABLE.png, drawn from the facts
-report     RESULTS.md, written from the facts
+report     the pages of docs/results, written from the facts
 command    the two commands
 """

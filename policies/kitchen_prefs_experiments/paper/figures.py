@@ -1,4 +1,4 @@
-"""The pictures of tables: our means with their intervals, and the paper's figures beside them."""
+"""The figures of the tables: our means with their intervals, and the paper's values beside them."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -12,15 +12,15 @@ PACKING_EFFICIENCY = "packing efficiency PE (share of the expert's)"
 AXES = {
     "PE": PACKING_EFFICIENCY,
     "PE, other prompt": PACKING_EFFICIENCY,
-    "ED_c": "likeness to the expert's decisions ED_c",
+    "ED_c": "edit similarity to the expert's decisions ED_c",
     "Category accuracy": "category accuracy (share of decisions)",
     "Pick accuracy": "category accuracy (share of pick decisions)",
 }
-# Okabe and Ito's colours, which the colour-blind tell apart; the paper's are black and grey.
+# Okabe and Ito's colours, safe for colour-blind readers; the paper's are black and grey.
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#E69F00", "#56B4E9", "#CC79A7", "#8A7A2E", "#882255")
 PAPER_COLOURS = ("#000000", "#888888")
 STEP = 14  # pixels between marks that stand side by side
-LEAST_WIDTH = 560  # pixels, so that names of rows fit
+MIN_WIDTH = 560  # pixels, so that names of rows fit
 
 
 def draw(table: Table | Curves, facts: dict, file: Path) -> None:
@@ -28,7 +28,7 @@ def draw(table: Table | Curves, facts: dict, file: Path) -> None:
 
     Args:
         table: What it holds, and the paper's figures.
-        facts: What came of it, as `facts` keeps them.
+        facts: Its results, see `result_files`.
         file: The picture, a PNG file.
     """
     chart = _curves(table, facts) if isinstance(table, Curves) else _table(table, facts)
@@ -45,7 +45,7 @@ def _table(table: Table, facts: dict) -> alt.LayerChart:
     ours = list(facts["rows"] if several else _drawn(table, facts))
     places = list(table.groups if several else facts["rows"])
     series = [*ours, *table.paper_values]
-    width = max(LEAST_WIDTH, STEP * len(places) * (len(series) + 1))
+    width = max(MIN_WIDTH, STEP * len(places) * (len(series) + 1))
     title = f"{table.title}: mean and 95 % interval"
     if not several:
         title += f" on {table.groups[0]}"

@@ -28,7 +28,7 @@ from kitchen_prefs_experiments.paper.evaluated_policies import (
 from kitchen_prefs_experiments.paper.figures import COLOURS, draw
 from kitchen_prefs_experiments.paper.paper_tables import TABLES, get_table
 from kitchen_prefs_experiments.paper.result_files import read_facts, write_facts
-from kitchen_prefs_experiments.paper.results_page import YARDSTICK, report
+from kitchen_prefs_experiments.paper.results_page import pages
 from kitchen_prefs_experiments.paper.rows import BASE
 from kitchen_prefs_experiments.paper.table_types import Table
 from kitchen_prefs_experiments.paper.training import seconds_of, train
@@ -277,12 +277,6 @@ def test_the_recipe_is_what_the_base_rows_are_called():
     assert not policy.get("hidden")
 
 
-def test_a_table_of_several_groups_has_the_yardstick():
-    several = [table for table in POLICY_TABLES.values() if len(table.groups) > 1]
-    assert several
-    assert all(YARDSTICK in table.rows for table in several)
-
-
 @pytest.mark.parametrize("name", POLICY_TABLES)
 def test_the_papers_values_stand_where_ours_do(name):
     table = TABLES[name]
@@ -291,44 +285,67 @@ def test_the_papers_values_stand_where_ours_do(name):
         assert set(values) <= set(places)
 
 
-def test_the_report_sets_our_figures_beside_the_papers(tmp_path):
+def test_a_page_sets_our_figures_beside_the_papers(tmp_path):
     write_facts(made_up_facts("main"), tmp_path)
     write_facts(made_up_facts("attributes"), tmp_path)
-    text = report(tmp_path)
-    assert "| TTP, ttp_plus | 0.40 [0.30, 0.50], 50% |" in text
-    assert "| symbolic | 0.80 [0.70, 0.90], 100% |" in text
-    assert "| TTP in the paper | 0.62 | 0.54 | 0.34 | - | - | - |" in text
+    written = pages(tmp_path)
+    assert "| TTP in the paper | 0.62 | 0.54 | 0.34 | - | - | - |" in written["main"]
+    text = written["attributes"]
     assert "| pose, time | 0.40 [0.30, 0.50] | 0.40 [0.30, 0.50] | 0.419 |" in text
     assert "`kitchen-prefs reproduce attributes --budget=32000`" in text
-    assert "training from nothing saw 32,000 decisions with the recipe `ttp_quick`" in text
+    assert "training from scratch saw 32,000 decisions with the recipe `ttp_quick`" in text
     assert "the trainings took 900 to 900 s each" in text
 
 
-def test_the_report_names_what_is_missing_and_takes_the_prose_as_it_is(tmp_path):
-    (tmp_path / "introduction.md").write_text("Our kitchen is another one.\n")
-    (tmp_path / "counts.md").write_text("Ten dishes are *many*.\n")
+def test_rows_in_which_all_figures_are_equal_become_a_sentence(tmp_path):
+    facts = made_up_facts("main")
+    seen = facts["rows"]["random"]["groups"]["seen"]
+    seen["metrics"] = seen["metrics"] | {"PE": {"mean": 0.1, "low": 0, "high": 1}}
+    write_facts(facts, tmp_path)
+    section = pages(tmp_path)["main"].partition("### PE")[2].partition("###")[0]
+    assert "| random | 0.10 [0.00, 1.00] | 0.40 [0.30, 0.50] |" in section
+    assert "| symbolic |" not in section
+    assert "; symbolic 0.80 [0.70, 0.90]; " in section
+
+
+def test_rows_of_an_earlier_page_are_linked_and_not_repeated(tmp_path):
+    write_facts(made_up_facts("main"), tmp_path)
+    write_facts(made_up_facts("reinforcement"), tmp_path)
+    text = pages(tmp_path)["reinforcement"]
+    assert "on other pages: [random](main.md), [symbolic](main.md)." in text
+    assert "symbolic 0.80" not in text
+
+
+def test_the_overview_names_what_is_missing_and_takes_the_prose_as_it_is(tmp_path):
+    (tmp_path / "prose").mkdir()
+    (tmp_path / "prose" / "index.md").write_text("Our kitchen is another one.\n")
+    (tmp_path / "prose" / "counts.md").write_text("Ten dishes are *many*.\n")
     write_facts(made_up_facts("counts"), tmp_path)
-    text = report(tmp_path)
-    assert text.startswith("# Results\n\nOur kitchen is another one.\n\n")
-    assert "\n\nTen dishes are *many*.\n\n" in text
-    missing = text.partition("## Not there yet")[2]
+    written = pages(tmp_path)
+    assert set(written) == {"index", "counts"}
+    assert written["index"].startswith("# Results\n\nOur kitchen is another one.\n\n")
+    assert "[The number of dishes](counts.md)" in written["index"]
+    assert "\n\nTen dishes are *many*.\n\n" in written["counts"]
+    missing = written["index"].partition("Not run yet")[2]
     assert {name for name in TABLES if f"`{name}`" in missing} == set(TABLES) - {"counts"}
 
 
-def test_the_report_says_what_is_done_otherwise_than_in_the_paper(tmp_path):
+def test_a_page_says_what_is_done_otherwise_than_in_the_paper(tmp_path):
     write_facts(made_up_facts("finetuning"), tmp_path)
     write_facts(made_up_facts("history"), tmp_path)
-    text = report(tmp_path)
-    assert "all rows but 0 belong to the open track" in text
-    assert "the trainings took 3 to 900 s each" in text
-    assert "trained on all decisions of preference 1 and measured on the picks" in text
-    assert "| PE, other prompt on unseen_preferences (70) |" in text
+    written = pages(tmp_path)
+    assert "all rows but 0 belong to the open track" in written["finetuning"]
+    assert "the trainings took 3 to 900 s each" in written["finetuning"]
+    assert "| PE, other prompt on unseen_preferences (70) |" in written["finetuning"]
+    assert (
+        "trained on all decisions of preference 1 and measured on the picks" in written["history"]
+    )
 
 
 def test_damaged_facts_are_named(tmp_path):
     (tmp_path / "main.json").write_text('{"table": ')
     with pytest.raises(ValueError, match=r"main\.json is damaged; `kitchen-prefs reproduce main`"):
-        report(tmp_path)
+        pages(tmp_path)
 
 
 @pytest.mark.parametrize(("name", "ours"), [("main", 7), ("attributes", 1), ("finetuning", 2)])
@@ -341,8 +358,10 @@ def test_a_picture_shows_our_means_and_the_papers_values(tmp_path, name, ours):
         assert (np.abs(pixels - red_green_blue).sum(axis=-1) < 20).sum() > 200
 
 
-def test_the_committed_report_is_written_from_the_committed_facts():
-    assert (ROOT / "docs" / "RESULTS.md").read_text() == report(ROOT / "docs" / "results")
+def test_the_committed_pages_are_written_from_the_committed_facts():
+    folder = ROOT / "docs" / "results"
+    committed = {file.stem: file.read_text() for file in folder.glob("*.md")}
+    assert committed == pages(folder)
 
 
 def test_the_committed_facts_are_those_of_the_tables():
@@ -385,6 +404,6 @@ def test_a_tiny_table_is_run_once_and_reported(tmp_path, monkeypatch):
     assert (tmp_path / "results" / "tiny.json").read_text() == written
 
     assert run("results", f"--results={tmp_path / 'results'}").exit_code == 0
-    text = (tmp_path / "RESULTS.md").read_text()
-    assert "| symbolic | 1.00 [1.00, 1.00], 100% |" in text
-    assert "**Category accuracy**\n\n|  | val (70) |" in text
+    text = (tmp_path / "results" / "tiny.md").read_text()
+    assert "symbolic 1.00 [1.00, 1.00]" in text
+    assert "### Category accuracy\n\n|  | val (70) |" in text
