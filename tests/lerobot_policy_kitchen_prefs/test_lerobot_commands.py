@@ -60,6 +60,7 @@ def trained(home):
     return home / "run"
 
 
+@pytest.mark.lerobot
 @pytest.mark.slow
 def test_ttp_resumes_where_it_stopped(home, trained):
     config = trained / "checkpoints" / "last" / "pretrained_model" / "train_config.json"
@@ -70,6 +71,7 @@ def test_ttp_resumes_where_it_stopped(home, trained):
     assert step["step"] == 6
 
 
+@pytest.mark.lerobot
 @pytest.mark.slow
 def test_ttp_fine_tunes_from_a_checkpoint(home, trained):
     log = run(
@@ -85,6 +87,7 @@ def test_ttp_fine_tunes_from_a_checkpoint(home, trained):
     assert "step:2" in log
 
 
+@pytest.mark.lerobot
 @pytest.mark.slow
 def test_lerobot_eval_plays_a_checkpoint(home, trained):
     out = home / "eval"
@@ -104,6 +107,7 @@ def test_lerobot_eval_plays_a_checkpoint(home, trained):
     assert info["overall"]["n_episodes"] == 3
 
 
+@pytest.mark.lerobot
 @pytest.mark.slow
 def test_evaluate_plays_a_checkpoint_and_the_expert(home, trained):
     checkpoint = f"--policy.path={trained}/checkpoints/000004/pretrained_model"
@@ -114,6 +118,7 @@ def test_evaluate_plays_a_checkpoint_and_the_expert(home, trained):
         assert len(read_episodes(out / "noisy.jsonl")) == 60
 
 
+@pytest.mark.lerobot
 @pytest.mark.slow
 def test_lerobot_eval_gives_the_expert_full_success(home):
     run(
@@ -132,11 +137,13 @@ def test_lerobot_eval_gives_the_expert_full_success(home):
     assert info["overall"]["pc_success"] == 100
 
 
+@pytest.mark.lerobot
 @pytest.mark.slow
 def test_lerobots_act_trains_and_plays_unchanged(home):
     train_and_play(home, "act", "--policy.dim_model=32", "--policy.dim_feedforward=32")
 
 
+@pytest.mark.lerobot
 @pytest.mark.slow
 def test_lerobots_diffusion_trains_and_plays_unchanged(home):
     pytest.importorskip("diffusers", reason="wants `uv run --extra diffusion`")
@@ -144,6 +151,7 @@ def test_lerobots_diffusion_trains_and_plays_unchanged(home):
     train_and_play(home, "diffusion", *small)
 
 
+@pytest.mark.lerobot
 @pytest.mark.slow
 def test_ttp_trains_and_plays_on_the_final_state_alone(home):
     train_and_play(home, "ttp_final", *SMALL_TTP, "--policy.dim_feedforward=32")
@@ -160,6 +168,7 @@ def train_and_play(home, recipe, *small):
     assert len(read_episodes(home / recipe / "evaluation" / "noisy.jsonl")) == 60
 
 
+@pytest.mark.lerobot
 @pytest.mark.slow
 def test_the_graph_network_resumes_and_plays_on_the_privileged_track(home):
     recipe = f"--config_path={recipe_file('gnn_tuned')}"
@@ -176,6 +185,7 @@ def test_the_graph_network_resumes_and_plays_on_the_privileged_track(home):
     assert summary["conditions"]["track"] == "privileged"
 
 
+@pytest.mark.lerobot
 @pytest.mark.slow
 def test_the_recipes_train(home):
     # ttp_plus goes on from ttp_quick.
@@ -194,6 +204,7 @@ def test_the_recipes_train(home):
         assert "pick_accuracy:" in log
 
 
+@pytest.mark.lerobot
 @pytest.mark.slow
 def test_mixed_precision_trains_weights_of_float32(home):
     log = run(
