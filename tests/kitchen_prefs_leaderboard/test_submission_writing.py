@@ -33,23 +33,26 @@ SUBMIT = (
 pytestmark = pytest.mark.usefixtures("few_sessions")
 
 
-@pytest.fixture(scope="module")
-def submitted(tmp_path_factory):
-    """What the program itself submits, and beside it the episodes that it played."""
-    out = tmp_path_factory.mktemp("submit") / "symbolic"
-    done = subprocess.run(
-        [sys.executable, "-m", "kitchen_prefs.cli", *SUBMIT, f"--out={out}", "--jobs=2"],
-        check=False,
-        env={**os.environ, "PYTHONPATH": str(SHORT_SPLITS)},
-        capture_output=True,
-        text=True,
-    )
-    assert done.returncode == 0, done.stderr
-    assert "Playing, many_preferences: 100%" in done.stderr
-    return out
+@pytest.fixture(scope="session")
+def submitted(made_once):
+    """What the program itself submits, and beside it the episodes that it rolled out."""
+
+    def fill(folder):
+        out = f"--out={folder / 'symbolic'}"
+        done = subprocess.run(
+            [sys.executable, "-m", "kitchen_prefs.cli", *SUBMIT, out, "--jobs=2"],
+            check=False,
+            env={**os.environ, "PYTHONPATH": str(SHORT_SPLITS)},
+            capture_output=True,
+            text=True,
+        )
+        assert done.returncode == 0, done.stderr
+        assert "Playing, many_preferences: 100%" in done.stderr
+
+    return made_once("submitted", fill) / "symbolic"
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def entry(submitted):
     """That submission, replayed."""
     with short_splits():
