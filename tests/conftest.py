@@ -1,6 +1,7 @@
 """What all tests share: a hub, what is made once a run, and how the workers share the tests."""
 
 import os
+import shutil
 from collections import Counter
 
 import pytest
@@ -32,12 +33,13 @@ def made_once(tmp_path_factory, worker_id):
     shared = base if alone else base.parent
 
     def make(name, fill):
-        folder, partial = shared / name, shared / f"{name}.partial"
+        folder, made = shared / name, shared / f"{name}.made"
         with FileLock(shared / f"{name}.lock"):
-            if not folder.exists():
-                partial.mkdir()
-                fill(partial)
-                partial.rename(folder)
+            if not made.exists():
+                shutil.rmtree(folder, ignore_errors=True)
+                folder.mkdir()
+                fill(folder)
+                made.touch()
         return folder
 
     return make

@@ -1,7 +1,7 @@
 """Cuts the test splits down to six sessions, so that whole submissions take seconds.
 
-Programs that a test starts are cut down by `short_splits_of_programs/sitecustomize.py` on their PYTHONPATH: no
-command has an option for a smaller split, as scores of one would not compare.
+`short_splits_of_programs/sitecustomize.py`, on the PYTHONPATH of a program that a test starts, does
+the same there: no command has an option for it, as scores of a shorter split would not compare.
 """
 
 from contextlib import contextmanager

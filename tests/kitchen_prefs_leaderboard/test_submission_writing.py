@@ -33,23 +33,26 @@ SUBMIT = (
 pytestmark = pytest.mark.usefixtures("few_sessions")
 
 
-@pytest.fixture(scope="module")
-def submitted(tmp_path_factory):
-    """What the program itself submits, and beside it the episodes that it played."""
-    out = tmp_path_factory.mktemp("submit") / "symbolic"
-    done = subprocess.run(
-        [sys.executable, "-m", "kitchen_prefs.cli", *SUBMIT, f"--out={out}", "--jobs=2"],
-        check=False,
-        env={**os.environ, "PYTHONPATH": str(SHORT_SPLITS)},
-        capture_output=True,
-        text=True,
-    )
-    assert done.returncode == 0, done.stderr
-    assert "Playing, many_preferences: 100%" in done.stderr
-    return out
+@pytest.fixture(scope="session")
+def submitted(made_once):
+    """What the program itself submits, and beside it the episodes that it rolled out."""
+
+    def fill(folder):
+        out = f"--out={folder / 'symbolic'}"
+        done = subprocess.run(
+            [sys.executable, "-m", "kitchen_prefs.cli", *SUBMIT, out, "--jobs=2"],
+            check=False,
+            env={**os.environ, "PYTHONPATH": str(SHORT_SPLITS)},
+            capture_output=True,
+            text=True,
+        )
+        assert done.returncode == 0, done.stderr
+        assert "Playing, many_preferences: 100%" in done.stderr
+
+    return made_once("submitted", fill) / "symbolic"
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def entry(submitted):
     """That submission, replayed."""
     with short_splits():
@@ -75,6 +78,7 @@ def episodes_of(submitted):
     return submitted.with_name(f"{submitted.name}-episodes")
 
 
+@pytest.mark.lerobot
 @pytest.mark.slow
 def test_a_submission_says_who_acted_and_holds_no_score(submitted):
     assert contents(submitted).keys() == {"submission.json", *ACTIONS.values()}
@@ -101,6 +105,7 @@ def test_a_submission_says_who_acted_and_holds_no_score(submitted):
     }
 
 
+@pytest.mark.lerobot
 @pytest.mark.slow
 def test_its_actions_lead_where_they_led_when_they_were_played(submitted, entry):
     folder = episodes_of(submitted)
@@ -113,6 +118,7 @@ def test_its_actions_lead_where_they_led_when_they_were_played(submitted, entry)
         assert {name: vars(interval) for name, interval in entry.metrics[split].items()} == said
 
 
+@pytest.mark.lerobot
 @pytest.mark.slow
 def test_its_actions_are_rounded(submitted):
     for file in ACTIONS.values():
@@ -121,6 +127,7 @@ def test_its_actions_are_rounded(submitted):
             assert numbers == [round(number, 4) for number in numbers]
 
 
+@pytest.mark.lerobot
 @pytest.mark.slow
 def test_submitting_again_plays_what_is_missing_and_gives_the_same_bytes(
     submitted, here, kitchen_prefs, tmp_path
@@ -179,6 +186,7 @@ def test_a_link_is_not_replaced(kitchen_prefs, tmp_path):
     assert "is something else than a submission; give another --out." in said
 
 
+@pytest.mark.lerobot
 @pytest.mark.slow
 def test_episodes_of_another_policy_are_not_submitted(submitted, here, kitchen_prefs, tmp_path):
     header = (episodes_of(submitted) / "seen.header.json").read_text()
@@ -205,6 +213,7 @@ def test_a_checkpoint_is_named_by_what_it_learned_and_how():
     )
 
 
+@pytest.mark.lerobot
 @pytest.mark.slow
 def test_a_rerun_by_the_same_policy_confirms_and_another_is_refused(
     submitted, entry, here, kitchen_prefs, tmp_path, capsys
@@ -243,6 +252,7 @@ def test_processes_share_the_splits(jobs):
     assert len(shares) <= jobs
 
 
+@pytest.mark.lerobot
 @pytest.mark.slow
 def test_who_chose_the_actions_only_a_rerun_tells(submitted, kitchen_prefs, capsys):
     assert kitchen_prefs("leaderboard", "verify", submitted) == 0

@@ -103,6 +103,7 @@ def evaluate_as_lerobot_does(rule, batch_size):
     }
 
 
+@pytest.mark.lerobot
 @pytest.mark.parametrize("rule", ["random", "symbolic"])
 def test_lerobot_eval_finds_the_same_for_each_session_at_any_batch_size(rule):
     one, seven, sixteen = (evaluate_as_lerobot_does(rule, size) for size in (1, 7, 16))
