@@ -62,4 +62,4 @@ class RowActions(gymnasium.Wrapper):
 
         An oracle: which dishes block which placements is not told to any policy that is evaluated.
         """
-        return self.env.feasible_rows()
+        return self.env.simulator.feasible_rows()
