@@ -43,8 +43,9 @@ POLICIES = {
 }
 EXPERIMENTS = {
     "recipes": "kitchen_prefs.utils",
+    "lerobot_train": "recipes kitchen_prefs.utils",
     "quickstart": (
-        "recipes kitchen_prefs.datasets kitchen_prefs.envs kitchen_prefs.evaluation "
+        "lerobot_train recipes kitchen_prefs.datasets kitchen_prefs.envs kitchen_prefs.evaluation "
         "kitchen_prefs.metrics kitchen_prefs.rendering kitchen_prefs.splits kitchen_prefs.utils"
     ),
     "reinforcement": (
@@ -52,7 +53,7 @@ EXPERIMENTS = {
         "kitchen_prefs.metrics kitchen_prefs.simulation kitchen_prefs.utils"
     ),
     "paper": (
-        "recipes kitchen_prefs.datasets kitchen_prefs.evaluation kitchen_prefs.metrics "
+        "lerobot_train recipes kitchen_prefs.datasets kitchen_prefs.evaluation kitchen_prefs.metrics "
         "kitchen_prefs.splits kitchen_prefs.utils"
     ),
     "__init__": "",

@@ -46,21 +46,22 @@ def reproduce(
     make_folder(results, "--results")
     from kitchen_prefs_experiments.paper.figures import draw
     from kitchen_prefs_experiments.paper.learning_curves import run_curves
-    from kitchen_prefs_experiments.paper.result_files import write_facts
+    from kitchen_prefs_experiments.paper.result_files import write_results
     from kitchen_prefs_experiments.paper.table_runner import run_table
 
     for name, table in chosen.items():
-        if isinstance(table, Curves):
-            facts = run_curves(name, table)
-        else:
-            facts = run_table(name, table, budget, jobs, out)
-        write_facts(facts, results)
-        draw(table, facts, results / f"{name}.png")
+        found = (
+            run_curves(name, table)
+            if isinstance(table, Curves)
+            else run_table(name, table, budget, jobs, out)
+        )
+        write_results(found, results)
+        draw(table, found, results / f"{name}.png")
         typer.echo(f"{name} is in {results}.")
 
 
 @app.command("results")
-def write_results(results: Results = Path("docs/results")) -> None:
+def write_page(results: Results = Path("docs/results")) -> None:
     """Write docs/RESULTS.md beside the folder of the results, from what is in it alone.
 
     For example:

@@ -6,8 +6,15 @@ Prose stands in results/introduction.md and, under each table, results/TABLE.md.
 from collections.abc import Iterator
 from pathlib import Path
 
+from kitchen_prefs.metrics import Interval
 from kitchen_prefs_experiments.paper.paper_tables import TABLES
-from kitchen_prefs_experiments.paper.result_files import read_facts
+from kitchen_prefs_experiments.paper.result_files import (
+    CurveResults,
+    CurveRow,
+    PolicyResults,
+    PolicyRow,
+    read_results,
+)
 from kitchen_prefs_experiments.paper.table_types import Curves, Table
 
 YARDSTICK = "symbolic"  # the row whose means the shares are of
@@ -31,7 +38,7 @@ def report(folder: Path) -> str:
     Raises:
         ValueError: If a file is damaged.
     """
-    found = read_facts(folder)
+    found = read_results(folder)
     parts = ["# Results", *_prose(folder / "introduction.md"), HOW_TO_READ]
     for name, facts in found.items():
         parts += _section(name, TABLES[name], facts, folder)
@@ -44,18 +51,20 @@ def report(folder: Path) -> str:
     return "\n\n".join(parts) + "\n"
 
 
-def _section(name: str, table: Table | Curves, facts: dict, folder: Path) -> Iterator[str]:
+def _section(
+    name: str, table: Table | Curves, facts: PolicyResults | CurveResults, folder: Path
+) -> Iterator[str]:
     yield f"## {table.title}"
     yield f"In the paper: {table.paper}"
     if table.note:
         yield f"Here: {table.note}"
     yield f"![{table.title}]({folder.name}/{name}.png)"
-    yield from _figures(table, facts["rows"])
+    yield from _figures(table, facts.rows)
     yield _how_made(name, facts)
     yield from _prose(folder / f"{name}.md")
 
 
-def _figures(table: Table | Curves, rows: dict[str, dict]) -> Iterator[str]:
+def _figures(table: Table | Curves, rows: dict) -> Iterator[str]:
     if isinstance(table, Curves):
         yield _by_recipe(table, rows)
     elif len(table.groups) > 1:
@@ -70,14 +79,14 @@ def _prose(file: Path) -> list[str]:
     return [file.read_text().strip()] if file.exists() else []
 
 
-def _by_group(table: Table, rows: dict[str, dict], metric: str) -> str:
+def _by_group(table: Table, rows: dict[str, PolicyRow], metric: str) -> str:
     """One metric: a row for each policy, a column for each group that has it."""
-    yardstick = rows[YARDSTICK]["groups"]
-    groups = [group for group in table.groups if metric in yardstick[group]["metrics"]]
-    lines = [["", *(f"{group} ({yardstick[group]['episodes']})" for group in groups)]]
+    yardstick = rows[YARDSTICK].groups
+    groups = [group for group in table.groups if metric in yardstick[group].metrics]
+    lines = [["", *(f"{group} ({yardstick[group].episodes})" for group in groups)]]
     for row, facts in rows.items():
-        means = [facts["groups"][group]["metrics"][metric] for group in groups]
-        whole = [yardstick[group]["metrics"][metric]["mean"] for group in groups]
+        means = [facts.groups[group].metrics[metric] for group in groups]
+        whole = [yardstick[group].metrics[metric].mean for group in groups]
         cells = [f"{_cell(m)}, {_share(m, of)}" for m, of in zip(means, whole, strict=True)]
         lines.append([row, *cells])
     if metric == table.metrics[0]:
@@ -86,51 +95,51 @@ def _by_group(table: Table, rows: dict[str, dict], metric: str) -> str:
     return _markdown(lines)
 
 
-def _by_metric(table: Table, rows: dict[str, dict]) -> str:
+def _by_metric(table: Table, rows: dict[str, PolicyRow]) -> str:
     """One group: a row for each policy, a column for each metric and each of the paper's."""
     (group,) = table.groups
-    episodes = next(iter(rows.values()))["groups"][group]["episodes"]
+    episodes = next(iter(rows.values())).groups[group].episodes
     metrics = [f"{metric} on {group} ({episodes})" for metric in table.metrics]
     papers = [f"{table.metrics[0]}, {name}" for name in table.paper_values]
     lines = [[table.axis, *metrics, *papers]]
     for row, facts in rows.items():
-        means = facts["groups"][group]["metrics"]
+        means = facts.groups[group].metrics
         cells = [_cell(means[metric]) for metric in table.metrics]
         values = [_number(of.get(row)) for of in table.paper_values.values()]
         lines.append([row, *cells, *values])
     return _markdown(lines)
 
 
-def _by_recipe(curves: Curves, rows: dict[str, dict]) -> str:
+def _by_recipe(curves: Curves, rows: dict[str, CurveRow]) -> str:
     """A row for each recipe: how long it was trained, and what its best checkpoint is worth."""
     metrics = [f"{metric} at the best step" for metric in curves.drawn]
     lines = [["recipe", "steps", "minutes", "best step", *metrics]]
     for recipe, facts in rows.items():
-        (best,) = [point for point in facts["points"] if point["step"] == facts["best"]]
-        cells = [_cell(best["metrics"][metric]) for metric in curves.drawn]
-        minutes = f"{facts['seconds'] / 60:.0f}"
-        lines.append([f"`{recipe}`", f"{facts['steps']:,}", minutes, f"{best['step']:,}", *cells])
+        (best,) = [point for point in facts.points if point.step == facts.best]
+        cells = [_cell(best.metrics[metric]) for metric in curves.drawn]
+        minutes = f"{facts.seconds / 60:.0f}"
+        lines.append([f"`{recipe}`", f"{facts.steps:,}", minutes, f"{best.step:,}", *cells])
     return _markdown(lines)
 
 
-def _how_made(name: str, facts: dict) -> str:
+def _how_made(name: str, facts: PolicyResults | CurveResults) -> str:
     """The command that made the facts, and under which conditions."""
-    versions = f"data version {facts['data_version']}, package {facts['package_version']}"
-    if "budget" not in facts:
+    versions = f"data version {facts.data_version}, package {facts.package_version}"
+    if facts.budget is None:
         return f"Made by `kitchen-prefs reproduce {name}`; {versions}."
-    seconds = list(_seconds(facts["rows"]))
-    recipes = " and ".join(f"`{recipe}`" for recipe in facts["recipes"])
+    seconds = list(_seconds(facts.rows))
+    recipes = " and ".join(f"`{recipe}`" for recipe in facts.recipes or [])
     return (
-        f"Made by `kitchen-prefs reproduce {name} --budget={facts['budget']}`; {versions}. Each "
-        f"training from nothing saw {facts['budget']:,} decisions with the recipe {recipes}; the "
+        f"Made by `kitchen-prefs reproduce {name} --budget={facts.budget}`; {versions}. Each "
+        f"training from nothing saw {facts.budget:,} decisions with the recipe {recipes}; the "
         f"trainings took {min(seconds):,} to {max(seconds):,} s each."
     )
 
 
-def _seconds(rows: dict[str, dict]) -> Iterator[int]:
+def _seconds(rows: dict) -> Iterator[int]:
     """How long each training took; a row may stand for several."""
     for row in rows.values():
-        yield from (of["seconds"] for of in row.get("policies", [row]) if "seconds" in of)
+        yield from (of.seconds for of in row.policies or [row] if of.seconds is not None)
 
 
 def _markdown(lines: list[list[str]]) -> str:
@@ -138,12 +147,12 @@ def _markdown(lines: list[list[str]]) -> str:
     return "\n".join(f"| {' | '.join(line)} |" for line in (header, ["---"] * len(header), *rows))
 
 
-def _cell(interval: dict[str, float]) -> str:
-    return f"{interval['mean']:.2f} [{interval['low']:.2f}, {interval['high']:.2f}]"
+def _cell(interval: Interval) -> str:
+    return f"{interval.mean:.2f} [{interval.low:.2f}, {interval.high:.2f}]"
 
 
-def _share(interval: dict[str, float], whole: float) -> str:
-    return f"{interval['mean'] / whole:.0%}" if whole > 0 and interval["mean"] >= 0 else "-"
+def _share(interval: Interval, whole: float) -> str:
+    return f"{interval.mean / whole:.0%}" if whole > 0 and interval.mean >= 0 else "-"
 
 
 def _number(value: float | None) -> str:
