@@ -60,6 +60,6 @@ class RowActions(gymnasium.Wrapper):
     def action_masks(self) -> np.ndarray:
         """The rows that the kitchen would carry out, (N,) bool; sb3-contrib asks for them.
 
-        An oracle: which dishes block which placements is not observed by any policy that is evaluated.
+        An oracle: no evaluated policy observes which dishes block which placements.
         """
         return self.env.feasible_rows()
