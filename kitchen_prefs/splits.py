@@ -22,11 +22,11 @@ class Split:
 
     Attributes:
         name: As in `dishwasher-<name>-v1`.
-        people: The person of each session; its length is the split's size.
+        users: The user of each session; its length is the split's size.
         counts: The numbers of dishes per rack that the sessions take in turn.
         purpose: What it is for, in a few words.
         serves_prompts: Whether its sessions serve as prompts: then each puts every category into a
-        rack.
+            rack.
         noisy: Whether extents, poses and picks are noisy, as perception and grasping are.
         incomplete: Whether each session lacks one category, another one than its prompt lacks.
     """

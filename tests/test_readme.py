@@ -1,5 +1,6 @@
-"""The README: its Python runs, and its commands name what exists."""
+"""The README: short, its Python runs, its commands name what exists, its table is up to date."""
 
+import json
 import os
 import re
 import subprocess
@@ -7,8 +8,11 @@ import sys
 from pathlib import Path
 
 import pytest
+import typer
 
+from kitchen_prefs.cli import command_line
 from kitchen_prefs.splits import SPLITS
+from kitchen_prefs_experiments.paper.readme_table import replace_table
 
 ROOT = Path(__file__).parents[1]
 README = (ROOT / "README.md").read_text()
@@ -18,6 +22,7 @@ def blocks(language):
     return re.findall(rf"```{language}\n(.*?)```", README, re.DOTALL)
 
 
+@pytest.mark.lerobot
 @pytest.mark.slow
 @pytest.mark.parametrize("block", blocks("python"), ids=lambda block: block.splitlines()[0])
 def test_python_runs_as_printed(block, tmp_path):
@@ -50,12 +55,25 @@ def test_commands_name_recipes_and_splits_that_exist():
         assert set(names.split(",")) <= set(SPLITS)
 
 
-def test_the_splits_table_is_right():
-    rows = re.findall(r"\| `(\w+)` \| [^|]+ \| [^|]+ \| (\d+) \|", README)
-    assert rows
-    assert {name: int(size) for name, size in rows}.items() <= {
-        name: split.sessions for name, split in SPLITS.items()
-    }.items()
+def test_commands_exist():
+    commands = typer.main.get_command(command_line())
+    for words in re.findall(r"kitchen-prefs ((?:[a-z][a-z-]* ?)+)", "\n".join(blocks("bash"))):
+        command = commands
+        for word in words.split():
+            subcommands = getattr(command, "commands", None)
+            if subcommands is None:
+                break  # an argument, such as a run's folder
+            assert word in subcommands, words
+            command = subcommands[word]
+
+
+def test_it_is_short():
+    assert len(README.splitlines()) < 200
+
+
+def test_the_table_is_written_from_the_leaderboards_scores():
+    scores = json.loads((ROOT / "leaderboard" / "scores.json").read_text())
+    assert replace_table(README, scores) == README, "`kitchen-prefs readme-table` writes it"
 
 
 def test_links_lead_somewhere():

@@ -126,6 +126,7 @@ def test_the_log_of_lerobot_train_is_read(run):
     ]
 
 
+@pytest.mark.lerobot
 def test_a_failed_training_names_its_log(tmp_path, run, monkeypatch):
     broken = tmp_path / "broken.yaml"
     broken.write_text("nonsense: 1\n")

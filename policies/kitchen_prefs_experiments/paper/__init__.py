@@ -1,4 +1,4 @@
-"""`kitchen-prefs reproduce` and `kitchen-prefs results`: the paper's tables, in our kitchen.
+"""`kitchen-prefs reproduce`, `results` and `readme-table`: the paper's tables, in our kitchen.
 
 evaluated_policies  committed checkpoints, rules, trainings and fine-tunings: the tables' rows
 table_types         what a table is, and what a table of learning curves is
@@ -9,6 +9,7 @@ table_metrics       the metrics of a table's groups, from the episodes on disk
 learning_curves     runs the table of learning curves
 result_files        docs/results/TABLE.json, written and read
 figures             docs/results/TABLE.png, drawn from the results
-results_page        docs/RESULTS.md, written from the results
-commands            the two commands
+results_page        docs/results/TABLE.md and the overview, written from the results
+readme_table        the README's table, written from the leaderboard's scores
+commands            the three commands
 """

@@ -1,8 +1,9 @@
-"""The commands `kitchen-prefs reproduce` and `kitchen-prefs results`.
+"""`kitchen-prefs reproduce`, `kitchen-prefs results` and `kitchen-prefs readme-table`.
 
 LeRobot and altair take seconds to import, so the commands import what needs them when they run.
 """
 
+import json
 from pathlib import Path
 from typing import Annotated
 
@@ -61,16 +62,39 @@ def reproduce(
 
 
 @app.command("results")
-def write_page(results: Results = Path("docs/results")) -> None:
-    """Write docs/RESULTS.md beside the folder of the results, from what is in it alone.
+def write_pages(results: Results = Path("docs/results")) -> None:
+    """Write the pages and pictures of the results, from what the folder holds alone.
 
     For example:
     kitchen-prefs results
     """
-    from kitchen_prefs_experiments.paper.results_page import report
+    from kitchen_prefs_experiments.paper.figures import draw
+    from kitchen_prefs_experiments.paper.result_files import read_results
+    from kitchen_prefs_experiments.paper.results_page import pages
 
-    file = results.parent / "RESULTS.md"
-    text = report(results)
-    with atomic_file(file) as beside:
+    for name, text in pages(results).items():
+        with atomic_file(results / f"{name}.md") as beside:
+            beside.write_text(text)
+    for name, found in read_results(results).items():
+        draw(TABLES[name], found, results / f"{name}.png")
+    typer.echo(f"The pages are in {results}; index.md is the overview.")
+
+
+@app.command()
+def readme_table(
+    scores: Annotated[
+        Path, typer.Option(help="The JSON of `kitchen-prefs leaderboard score`.")
+    ] = Path("leaderboard/scores.json"),
+    readme: Annotated[Path, typer.Option(help="Holds the table.")] = Path("README.md"),
+) -> None:
+    """Write the README's table of results from the leaderboard's scores.
+
+    For example:
+    kitchen-prefs readme-table
+    """
+    from kitchen_prefs_experiments.paper.readme_table import replace_table
+
+    text = replace_table(readme.read_text(), json.loads(scores.read_text()))
+    with atomic_file(readme) as beside:
         beside.write_text(text)
-    typer.echo(f"The report is {file}.")
+    typer.echo(f"The table is in {readme}.")

@@ -28,14 +28,14 @@ from kitchen_prefs_experiments.paper.table_types import Curves, Table
 
 ALL_METRICS = ("PE", "Score", "ED_c", "ED", "TE", "Success")
 
-TABLES: dict[str, Table | Curves] = {  # by worth
+TABLES: dict[str, Table | Curves] = {  # in the order of the pages
     "main": Table(
         title="The test splits",
         paper=(
-            "TTP packs .62 of what the expert packs on seen preferences, .54 on unseen ones and "
-            ".34 on unseen numbers of dishes. Its graph network, which is told the preference, "
-            "reaches .34 on seen preferences by imitation and .017 ± .002 by reinforcement; random "
-            "decisions do not solve the task at all."
+            "TTP has a PE of .62 on seen preferences, .54 on unseen ones and .34 on unseen numbers "
+            "of dishes. The graph network, which is given the preference's label, has .34 on seen "
+            "preferences by imitation and .017 ± .002 by reinforcement; random decisions have "
+            "about 0."
         ),
         axis="test split",
         rows=TTP | RULES,
@@ -48,10 +48,10 @@ TABLES: dict[str, Table | Curves] = {  # by worth
         prompt_use=("seen", "unseen_preferences"),
     ),
     "gnn": Table(
-        title="Graph networks that are told the preference",
+        title="Graph networks with the preference's label",
         paper=(
-            "GNN-IL, told the preference's label, packs .34 of what the expert packs on seen "
-            "preferences, and no less on unseen ones, whose labels it is told, too (no figure)."
+            "GNN-IL, which is given the preference's label, has a PE of .34 on seen preferences, "
+            "and no less on unseen ones, whose labels it is given, too (no figure)."
         ),
         axis="test split",
         rows=GNN_IL | {"TTP, ttp_quick": QUICK} | TTP | {"symbolic": RULES["symbolic"]},
@@ -61,20 +61,19 @@ TABLES: dict[str, Table | Curves] = {  # by worth
         note=(
             "The GNN rows are of the privileged track: the label is an input. There are twelve "
             "inputs for it, five of which `dishwasher-train-v1` never sets; the rows named `_all` "
-            "are trained on `dishwasher-train-all-v1`, which shows all twelve preferences. Whoever "
-            "is none of the twelve, as on `many_preferences`, has no input. `gnn_paper`, "
-            "`gnn_paper_all` and `gnn_tuned` learned from 128,000 decisions, `gnn_tuned_all` went "
-            "on from `gnn_tuned` for 96,000, `ttp_quick` learned from 32,000. LeRobot clips "
-            "gradients at a norm of 10 for `gnn_paper`, of which the paper says nothing; its rows "
-            "are drawn by their probabilities, without which it packs half as much on `val`. TTP, "
-            "in the standard track, reads a prompt instead."
+            "are trained on `dishwasher-train-all-v1`, which shows all twelve preferences. The "
+            "preferences of `many_preferences` have no input. `gnn_paper`, `gnn_paper_all` and "
+            "`gnn_tuned` learned from 128,000 decisions, `gnn_tuned_all` went on from `gnn_tuned` "
+            "for 96,000, `ttp_quick` learned from 32,000. LeRobot clips gradients at a norm of 10 "
+            "for `gnn_paper`, of which the paper says nothing; its rows are sampled, as the most "
+            "probable row has half the PE on `val`. TTP, on the standard track, reads a prompt."
         ),
     ),
     "reinforcement": Table(
-        title="Learning from rewards",
+        title="Reinforcement learning",
         paper=(
-            "GNN-RL, after 32,000 interactions of PPO, packs .017 ± .002, random decisions about "
-            "nothing: sessions of more than thirty decisions are too long for it."
+            "GNN-RL, after 32,000 interactions of PPO, has a PE of .017 ± .002, random decisions "
+            "about 0: sessions of more than thirty decisions are too long for it."
         ),
         axis="test split",
         rows=GNN_RL | {"random": RULES["random"], "symbolic": RULES["symbolic"]},
@@ -82,11 +81,11 @@ TABLES: dict[str, Table | Curves] = {  # by worth
         metrics=ALL_METRICS,
         paper_values={"GNN-RL in the paper": {"seen": 0.017}},
         note=(
-            "The GNN rows are of the open track, because they learn in the kitchen, and they are "
-            "told the label. An interaction is one decision here, a pick or a place; the paper "
-            "does not say which split its figure is of. Masked, PPO chose among what the kitchen "
-            "would carry out while it learned. Evaluated, no policy has a mask, and rows are drawn "
-            "by their probabilities, as they are in training."
+            "The GNN rows are of the open track, because they learn in the simulator, and they are "
+            "given the label. An interaction is one decision here, a pick or a place; the paper "
+            "does not say which split its figure is of. The masked PPO chose among feasible "
+            "decisions in training. In evaluation no policy has a mask, and rows are sampled, as "
+            "in training."
         ),
     ),
     "unprompted": Table(
@@ -101,23 +100,23 @@ TABLES: dict[str, Table | Curves] = {  # by worth
         splits=TEST_SPLITS,
         metrics=ALL_METRICS,
         note=(
-            "ACT and diffusion are LeRobot's, unchanged. They see a flat summary of the visible "
-            "set and neither a prompt nor a label, and return poses, to which the kitchen takes "
-            "the nearest instance. ACT learned from 64,000 decisions, diffusion and `ttp_quick` "
-            "from 32,000. The yardstick is `majority`, the rule that acts by one training "
-            "preference."
+            "ACT and diffusion are LeRobot's, unchanged. They observe a flat summary of the "
+            "visible set and neither a prompt nor a label, and return poses, of which the "
+            "environment takes the nearest instance. ACT learned from 64,000 decisions, diffusion "
+            "and `ttp_quick` from 32,000. Compare with `majority`, the rule that acts by one "
+            "training preference."
         ),
     ),
     "horizons": Table(
-        title="Decisions at a time",
+        title="Action horizon",
         paper="LeRobot's policies are not in the paper.",
-        axis="how many decisions ACT chooses from what it has seen once",
+        axis="decisions that ACT carries out for each observation",
         rows={str(number): act(number) for number in (1, 4)},
         splits=("val",),
         metrics=("PE", "Score"),
         note=(
-            "The recipe `act` chooses one at a time. How many decisions `diffusion` carries out of "
-            "those that it has drawn is a matter of playing alone: `evaluate` takes "
+            "The recipe `act` chooses one decision at a time. How many of its sampled decisions "
+            "`diffusion` carries out is set at evaluation alone: `kitchen-prefs evaluate` takes "
             "`--policy.n_action_steps`."
         ),
     ),
@@ -137,18 +136,18 @@ TABLES: dict[str, Table | Curves] = {  # by worth
         metrics=("ED_c", "PE", "Score", "ED", "TE", "Success"),
         note=(
             "`ttp_final` is `ttp_quick` with another prompt, trained three times as long: the "
-            "dishes in both racks when each rack was last seen, without time. Which rack came "
-            "first is lost; which dish came first shows only in how far from the corner each "
-            "stands, and relabelling, which draws the places of its prompts at random, blurs that."
+            "dishes in both racks when each rack was last visible, without time. Which rack was "
+            "first is lost; which dish was first shows only in its distance to the corner, and "
+            "relabelling, which samples the poses in its prompts, blurs that."
         ),
     ),
     "attributes": Table(
-        title="What is seen of an instance",
+        title="Attributes of an instance",
         paper=(
             "Every attribute helps: pose most, then category, then time. With all three PE is "
-            ".606, without the pose at most .142."
+            ".606, without the pose .142 at most."
         ),
-        axis="attributes that the policy sees",
+        axis="attributes that the policy observes",
         rows={
             "nothing": hidden("pose", "category", "time"),
             "time": hidden("pose", "category"),
@@ -174,8 +173,8 @@ TABLES: dict[str, Table | Curves] = {  # by worth
             }
         },
         note=(
-            "Beside the encoders, the recipe's geometric attention and learned shapes see extents "
-            "and poses as they are, unless they are hidden. The recipe does not show the time of a "
+            "Beside the encoders, the recipe's geometric attention and learned shapes take extents "
+            "and poses as they are, unless they are hidden. The recipe hides the time of a "
             "situation (`situation_time` is false), so time is that of the prompt alone."
         ),
     ),
@@ -191,10 +190,10 @@ TABLES: dict[str, Table | Curves] = {  # by worth
         metrics=("PE", "Score"),
         note=(
             "The recipe relabels the categories of its demonstrations. Where no training "
-            "preference puts a category into a rack, no pose is known for a dish that becomes one "
-            "of that category there: it keeps its old pose, which tells its old category. That "
-            "concerns the rows 1 to 5; from six preferences on, every category stands in both "
-            "racks."
+            "preference puts a category into a rack, no pose is known for a dish that is "
+            "relabelled to that category there: it keeps its old pose, which gives its old "
+            "category away. That concerns the rows 1 to 5; from six preferences on, every category "
+            "is placed in both racks."
         ),
     ),
     "demonstrations": Table(
@@ -212,8 +211,8 @@ TABLES: dict[str, Table | Curves] = {  # by worth
         title="The number of dishes",
         paper=(
             "Trained on 6 and 7 dishes per rack, TTP does well on 5 to 7 and worse the further "
-            "away: .62 on the numbers that it has seen, .34 on the others. With 3 or 4 dishes it "
-            "closes the dishwasher early. The curve's points have no numbers in the text."
+            "away: PE is .62 on the numbers of training, .34 on the others. With 3 or 4 dishes it "
+            "closes the dishwasher early. The points of the curve have no numbers in the text."
         ),
         axis="dishes per rack, and the means of the two splits that they come from",
         rows=TTP | {"symbolic": RULES["symbolic"]},
@@ -224,7 +223,7 @@ TABLES: dict[str, Table | Curves] = {  # by worth
     ),
     "prompts": Table(
         title="The number of prompts",
-        paper="The paper proposes several prompts against one that shows too little; no figures.",
+        paper="The paper proposes several prompts where one shows too little; no figures.",
         axis="test split",
         rows={
             "TTP, ttp_plus, 1 prompt": Committed("ttp_plus"),
@@ -238,9 +237,9 @@ TABLES: dict[str, Table | Curves] = {  # by worth
         metrics=("ED_c", "PE", "Score"),  # PE is nearly 1 in all rows
     ),
     "finetuning": Table(
-        title="Fine-tuning on the demonstration against prompting with it",
+        title="Fine-tuning or prompting",
         paper=(
-            "A prompt is to adapt TTP to an unseen preference without fine-tuning; the two are not "
+            "A prompt adapts TTP to an unseen preference without fine-tuning; the two are not "
             "compared."
         ),
         axis="steps of fine-tuning on one demonstration of the preference",
@@ -249,13 +248,12 @@ TABLES: dict[str, Table | Curves] = {  # by worth
         metrics=("PE", "PE, other prompt", "Prompt use", "Score"),
         prompt_use=("unseen_preferences",),
         note=(
-            "A row that the paper asks for and does not have. The policy trained on the seven "
-            "preferences goes on with one demonstration of a held-out one, once for each of the "
-            "five, and is played on the sessions of that preference alone. With the right prompt "
-            "the figures say what prompting and fine-tuning reach together, in row 0 what "
-            "prompting reaches alone; with another preference's prompt they say what the weights "
-            "have learned. Each episode is prompted with one of the 80 demonstrations of a "
-            "preference, mostly not the one that was fine-tuned on. Because held-out preferences "
+            "The policy trained on the seven preferences is fine-tuned on one demonstration of a "
+            "held-out one, once for each of the five, and evaluated on the sessions of that "
+            "preference alone. With the right prompt the figures show prompting and fine-tuning "
+            "together, in row 0 prompting alone; with another preference's prompt they show what "
+            "the weights have learned. Each episode is prompted with one of the 80 demonstrations "
+            "of a preference, mostly not the one of the fine-tuning. Because held-out preferences "
             "are trained on, all rows but 0 belong to the open track."
         ),
     ),
@@ -282,15 +280,15 @@ TABLES: dict[str, Table | Curves] = {  # by worth
         splits=("val",),
         metrics=("Category accuracy", "PE"),
         note=(
-            "Beside the encoders, the recipe's geometric attention and learned shapes see extents "
+            "Beside the encoders, the recipe's geometric attention and learned shapes take extents "
             "and poses as they are, so an encoder changes the embedding alone; `none` hides an "
-            "attribute from them, too. The recipe does not show the time of a situation "
+            "attribute from them, too. The recipe hides the time of a situation "
             "(`situation_time` is false), so time is that of the prompt alone."
         ),
     ),
     "batch_size": Table(
         title="The batch size",
-        paper="Category accuracy comes close to 1 (curves without numbers, one for a batch size).",
+        paper="Category accuracy comes close to 1 (a curve without numbers for each batch size).",
         axis="decisions in a batch",
         rows={
             "8": Training("batch-8", batch_size=8),
@@ -306,9 +304,9 @@ TABLES: dict[str, Table | Curves] = {  # by worth
         paper=(
             "Trained on one preference and on pick decisions alone, TTP's category accuracy on "
             "validation is above .9 for every history. A longer one learns faster at first; all "
-            "end alike (a curve without numbers)."
+            "reach the same (a curve without numbers)."
         ),
-        axis="earlier decisions in sight (k)",
+        axis="earlier decisions that are observed (k)",
         rows={str(decisions): history(decisions) for decisions in range(4)},
         splits=("val",),
         metrics=("Pick accuracy", "Category accuracy", "PE"),

@@ -1,12 +1,15 @@
-"""RESULTS.md: every table that has been run, our figures beside the paper's.
+"""The pages of results: an overview, and a page for each table that has been run.
 
-Prose stands in results/introduction.md and, under each table, results/TABLE.md.
+Everything comes from the folder of results: figures from TABLE.json, prose from prose/TABLE.md and,
+for the overview, prose/index.md. A row whose figures an earlier page shows already is linked, and
+rows or columns in which all figures are equal become one sentence.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 from kitchen_prefs.metrics import Interval
+from kitchen_prefs.splits import TEST_SPLITS
 from kitchen_prefs_experiments.paper.paper_tables import TABLES
 from kitchen_prefs_experiments.paper.result_files import (
     CurveResults,
@@ -17,82 +20,118 @@ from kitchen_prefs_experiments.paper.result_files import (
 )
 from kitchen_prefs_experiments.paper.table_types import Curves, Table
 
-YARDSTICK = "symbolic"  # the row whose means the shares are of
+OVERVIEW = "index"
 HOW_TO_READ = (
-    "Cells are means over episodes with 95 % bootstrap intervals; behind a name stands the number "
-    "of its episodes. Each policy was trained once, so the intervals say nothing of other seeds. A "
-    "percentage is the share of what the symbolic rule reaches, which reads the preference out of "
-    "the prompt by a written rule. The README says what metrics, splits and rules are."
+    "Cells are means over episodes with 95 % bootstrap intervals; behind the name of a split "
+    "stands its number of episodes. Each policy was trained once, so the intervals say nothing "
+    "about other seeds. [Metrics and protocol](../metrics_and_protocol.md) defines metrics, splits "
+    "and rules."
 )
 
 
-def report(folder: Path) -> str:
-    """RESULTS.md, written from the files of a folder alone.
+def pages(folder: Path) -> dict[str, str]:
+    """All pages, written from the files of a folder alone.
 
     Args:
-        folder: Holds TABLE.json, TABLE.png and the prose.
+        folder: Holds TABLE.json and prose/.
 
     Returns:
-        The report as Markdown.
+        For each page its name, without `.md`, and its Markdown.
 
     Raises:
         ValueError: If a file is damaged.
     """
     found = read_results(folder)
-    parts = ["# Results", *_prose(folder / "introduction.md"), HOW_TO_READ]
-    for name, facts in found.items():
-        parts += _section(name, TABLES[name], facts, folder)
+    overview = {OVERVIEW: _overview(found, folder)}
+    return overview | {name: _page(name, found, folder) for name in found}
+
+
+def _overview(found: Mapping[str, PolicyResults | CurveResults], folder: Path) -> str:
+    lines = [["table", "rows", "evaluated on"]]
+    for name in found:
+        title, rows = TABLES[name].title, " · ".join(TABLES[name].rows)
+        lines.append([f"[{title}]({name}.md)", rows, _evaluated_on(name)])
+    parts = ["# Results", *_prose(folder, OVERVIEW), "## The tables", _markdown(lines), HOW_TO_READ]
     if missing := [f"`{name}`" for name in TABLES if name not in found]:
-        parts += [
-            "## Not there yet",
-            f"{', '.join(missing)}: `kitchen-prefs reproduce TABLE` runs a table, and "
-            "`kitchen-prefs results` writes this page anew.",
-        ]
-    return "\n\n".join(parts) + "\n"
+        parts.append(
+            f"Not run yet: {', '.join(missing)}. `kitchen-prefs reproduce TABLE` runs a table, and "
+            "`kitchen-prefs results` writes these pages."
+        )
+    return _joined(parts)
 
 
-def _section(
-    name: str, table: Table | Curves, facts: PolicyResults | CurveResults, folder: Path
-) -> Iterator[str]:
-    yield f"## {table.title}"
-    yield f"In the paper: {table.paper}"
+def _evaluated_on(name: str) -> str:
+    table = TABLES[name]
+    splits = ("val",) if isinstance(table, Curves) else table.splits
+    return "the test splits" if splits == TEST_SPLITS else ", ".join(f"`{s}`" for s in splits)
+
+
+def _page(name: str, found: Mapping[str, PolicyResults | CurveResults], folder: Path) -> str:
+    table, results = TABLES[name], found[name]
+    parts = [f"# {table.title}", f"**In the paper.** {table.paper}"]
     if table.note:
-        yield f"Here: {table.note}"
-    yield f"![{table.title}]({folder.name}/{name}.png)"
-    yield from _figures(table, facts.rows)
-    yield _how_made(name, facts)
-    yield from _prose(folder / f"{name}.md")
-
-
-def _figures(table: Table | Curves, rows: dict) -> Iterator[str]:
+        parts.append(f"**Here.** {table.note}")
+    parts.append(f"![{table.title}]({name}.png)")
+    parts += [*_prose(folder, name), "## Figures"]
     if isinstance(table, Curves):
-        yield _by_recipe(table, rows)
-    elif len(table.groups) > 1:
-        for metric in table.metrics:
-            yield f"**{metric}**"
-            yield _by_group(table, rows, metric)
+        assert isinstance(results, CurveResults)
+        parts.append(_by_recipe(table, results.rows))
     else:
-        yield _by_metric(table, rows)
+        assert isinstance(results, PolicyResults)
+        if len(table.groups) == 1:
+            parts.append(_by_metric(table, results.rows))
+        else:
+            parts += _by_group(table, results.rows, _shown_before(name, found))
+    parts += ["## Reproduce", _how_made(name, results)]
+    return _joined(parts)
 
 
-def _prose(file: Path) -> list[str]:
-    return [file.read_text().strip()] if file.exists() else []
+def _shown_before(name: str, found: Mapping[str, PolicyResults | CurveResults]) -> dict[str, str]:
+    """The rows of a table that an earlier page shows, label -> the name of that page."""
+    shown: dict[str, str] = {}
+    for earlier in found:
+        if earlier == name:
+            break
+        if _groups(earlier) == _groups(name):
+            mine, theirs = found[name].rows, found[earlier].rows
+            for label in mine.keys() & theirs.keys() - shown.keys():
+                shown[label] = earlier
+    return shown
 
 
-def _by_group(table: Table, rows: dict[str, PolicyRow], metric: str) -> str:
-    """One metric: a row for each policy, a column for each group that has it."""
-    yardstick = rows[YARDSTICK].groups
-    groups = [group for group in table.groups if metric in yardstick[group].metrics]
-    lines = [["", *(f"{group} ({yardstick[group].episodes})" for group in groups)]]
-    for row, facts in rows.items():
-        means = [facts.groups[group].metrics[metric] for group in groups]
-        whole = [yardstick[group].metrics[metric].mean for group in groups]
-        cells = [f"{_cell(m)}, {_share(m, of)}" for m, of in zip(means, whole, strict=True)]
-        lines.append([row, *cells])
+def _groups(name: str) -> tuple[str, ...]:
+    table = TABLES[name]
+    return () if isinstance(table, Curves) else table.groups
+
+
+def _by_group(table: Table, rows: dict[str, PolicyRow], shown: Mapping[str, str]) -> Iterator[str]:
+    """A table for each metric: a row for each policy, a column for each group that has it."""
+    if links := [f"[{row}]({shown[row]}.md)" for row in rows if row in shown]:
+        yield f"To compare with, on other pages: {', '.join(links)}."
+    own = {label: row for label, row in rows.items() if label not in shown}
+    for metric in table.metrics:
+        yield f"### {metric}"
+        yield from _of_metric(table, own, metric)
+
+
+def _of_metric(table: Table, rows: dict[str, PolicyRow], metric: str) -> Iterator[str]:
+    groups_of = {label: row.groups for label, row in rows.items()}
+    any_row = next(iter(groups_of.values()))
+    groups = [group for group in table.groups if metric in any_row[group].metrics]
+    lines = {
+        row: [_cell(of[group].metrics[metric]) for group in groups] for row, of in groups_of.items()
+    }
+    constant = {row: cells[0] for row, cells in lines.items() if len({*cells}) == 1 < len(cells)}
+    body = [[row, *cells] for row, cells in lines.items() if row not in constant]
     if metric == table.metrics[0]:
-        for row, values in table.paper_values.items():
-            lines.append([row, *(_number(values.get(group)) for group in groups)])
-    return _markdown(lines)
+        for label, values in table.paper_values.items():
+            body.append([label, *(_number(values.get(group)) for group in groups)])
+    if body:
+        head = ["", *(f"{group} ({any_row[group].episodes})" for group in groups)]
+        yield _markdown([head, *body])
+    if constant:
+        cells = "; ".join(f"{row} {cell}" for row, cell in constant.items())
+        yield f"The same in every column: {cells}."
 
 
 def _by_metric(table: Table, rows: dict[str, PolicyRow]) -> str:
@@ -102,44 +141,53 @@ def _by_metric(table: Table, rows: dict[str, PolicyRow]) -> str:
     metrics = [f"{metric} on {group} ({episodes})" for metric in table.metrics]
     papers = [f"{table.metrics[0]}, {name}" for name in table.paper_values]
     lines = [[table.axis, *metrics, *papers]]
-    for row, facts in rows.items():
-        means = facts.groups[group].metrics
+    for label, row in rows.items():
+        means = row.groups[group].metrics
         cells = [_cell(means[metric]) for metric in table.metrics]
-        values = [_number(of.get(row)) for of in table.paper_values.values()]
-        lines.append([row, *cells, *values])
+        values = [_number(of.get(label)) for of in table.paper_values.values()]
+        lines.append([label, *cells, *values])
     return _markdown(lines)
 
 
 def _by_recipe(curves: Curves, rows: dict[str, CurveRow]) -> str:
-    """A row for each recipe: how long it was trained, and what its best checkpoint is worth."""
+    """A row for each recipe: how long it was trained, and the metrics of its best checkpoint."""
     metrics = [f"{metric} at the best step" for metric in curves.drawn]
     lines = [["recipe", "steps", "minutes", "best step", *metrics]]
-    for recipe, facts in rows.items():
-        (best,) = [point for point in facts.points if point.step == facts.best]
+    for recipe, row in rows.items():
+        (best,) = [point for point in row.points if point.step == row.best]
         cells = [_cell(best.metrics[metric]) for metric in curves.drawn]
-        minutes = f"{facts.seconds / 60:.0f}"
-        lines.append([f"`{recipe}`", f"{facts.steps:,}", minutes, f"{best.step:,}", *cells])
+        minutes = f"{row.seconds / 60:.0f}"
+        lines.append([f"`{recipe}`", f"{row.steps:,}", minutes, f"{best.step:,}", *cells])
     return _markdown(lines)
 
 
-def _how_made(name: str, facts: PolicyResults | CurveResults) -> str:
-    """The command that made the facts, and under which conditions."""
-    versions = f"data version {facts.data_version}, package {facts.package_version}"
-    if facts.budget is None:
-        return f"Made by `kitchen-prefs reproduce {name}`; {versions}."
-    seconds = list(_seconds(facts.rows))
-    recipes = " and ".join(f"`{recipe}`" for recipe in facts.recipes or [])
+def _how_made(name: str, results: PolicyResults | CurveResults) -> str:
+    """The command that made the results, and under which conditions."""
+    versions = f"data version {results.data_version}, package {results.package_version}"
+    if not isinstance(results, PolicyResults) or results.budget is None:
+        return f"`kitchen-prefs reproduce {name}` made the figures; {versions}."
+    seconds = list(_seconds(results.rows))
+    recipes = " and ".join(f"`{recipe}`" for recipe in results.recipes or ())
     return (
-        f"Made by `kitchen-prefs reproduce {name} --budget={facts.budget}`; {versions}. Each "
-        f"training from nothing saw {facts.budget:,} decisions with the recipe {recipes}; the "
-        f"trainings took {min(seconds):,} to {max(seconds):,} s each."
+        f"`kitchen-prefs reproduce {name} --budget={results.budget}` made the figures; "
+        f"{versions}. Each training from scratch saw {results.budget:,} decisions with the recipe "
+        f"{recipes}; the trainings took {min(seconds):,} to {max(seconds):,} s each."
     )
 
 
-def _seconds(rows: dict) -> Iterator[int]:
+def _seconds(rows: dict[str, PolicyRow]) -> Iterator[int]:
     """How long each training took; a row may stand for several."""
     for row in rows.values():
         yield from (of.seconds for of in row.policies or [row] if of.seconds is not None)
+
+
+def _prose(folder: Path, name: str) -> list[str]:
+    file = folder / "prose" / f"{name}.md"
+    return [file.read_text().strip()] if file.exists() else []
+
+
+def _joined(parts: list[str]) -> str:
+    return "\n\n".join(parts) + "\n"
 
 
 def _markdown(lines: list[list[str]]) -> str:
@@ -149,10 +197,6 @@ def _markdown(lines: list[list[str]]) -> str:
 
 def _cell(interval: Interval) -> str:
     return f"{interval.mean:.2f} [{interval.low:.2f}, {interval.high:.2f}]"
-
-
-def _share(interval: Interval, whole: float) -> str:
-    return f"{interval.mean / whole:.0%}" if whole > 0 and interval.mean >= 0 else "-"
 
 
 def _number(value: float | None) -> str:

@@ -21,8 +21,7 @@ class Table:
         title: Its heading.
         paper: What the paper says.
         axis: What stands along the picture's horizontal axis.
-        rows: The policies, each with what it is called; in a table of several groups "symbolic" is
-            among them, of which the others reach a share.
+        rows: The policies, each with its label.
         splits: The splits they are evaluated on.
         metrics: The metrics that are shown; the first is that of the picture and of the paper.
         paper_values: The paper's figures: what they are called -> group -> value or, in a table of

@@ -34,7 +34,7 @@ def made_up(name):
         groups = {
             group: GroupResults(
                 episodes=70,
-                metrics={
+                metrics={  # a dictionary of its own, so that a test may change it
                     metric: interval
                     for metric in table.metrics
                     if metric != "Prompt use" or group in table.prompt_use

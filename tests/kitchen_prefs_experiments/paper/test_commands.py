@@ -18,6 +18,7 @@ def run(*arguments):
     return CliRunner().invoke(command_line(), list(map(str, arguments)))
 
 
+@pytest.mark.lerobot
 @pytest.mark.slow
 def test_a_tiny_table_is_run_once_and_reported(tmp_path, monkeypatch):
     tiny = Training("tiny", "dishwasher-train-p2-d3-v1", 4, SMALL)
@@ -52,6 +53,6 @@ def test_a_tiny_table_is_run_once_and_reported(tmp_path, monkeypatch):
     assert (tmp_path / "results" / "tiny.json").read_text() == written
 
     assert run("results", f"--results={tmp_path / 'results'}").exit_code == 0
-    text = (tmp_path / "RESULTS.md").read_text()
-    assert "| symbolic | 1.00 [1.00, 1.00], 100% |" in text
-    assert "**Category accuracy**\n\n|  | val (70) |" in text
+    text = (tmp_path / "results" / "tiny.md").read_text()
+    assert "symbolic 1.00 [1.00, 1.00]" in text
+    assert "### Category accuracy\n\n|  | val (70) |" in text

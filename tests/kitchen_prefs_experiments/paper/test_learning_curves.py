@@ -1,4 +1,4 @@
-"""The learning curves: when each checkpoint came, and what report and picture show of it."""
+"""The learning curves: when each checkpoint came, and what page and figure show of it."""
 
 import json
 import re
@@ -18,7 +18,7 @@ from kitchen_prefs_experiments.paper.figures import COLOURS, draw
 from kitchen_prefs_experiments.paper.learning_curves import run_curves
 from kitchen_prefs_experiments.paper.paper_tables import TABLES
 from kitchen_prefs_experiments.paper.result_files import write_results
-from kitchen_prefs_experiments.paper.results_page import report
+from kitchen_prefs_experiments.paper.results_page import pages
 from kitchen_prefs_experiments.recipes import recipe_file
 
 CURVES = TABLES["learning"]
@@ -185,12 +185,12 @@ def test_a_finished_run_without_its_log_is_named_before_anything_is_trained(mach
     assert not machine.calls
 
 
-def test_the_report_tells_minutes_and_the_best_step(machine, tmp_path):
+def test_the_page_has_the_minutes_and_the_best_step(machine, tmp_path):
     write_results(run_curves("learning", CURVES), tmp_path)
-    text = report(tmp_path)
+    text = pages(tmp_path)["learning"]
     assert "| recipe | steps | minutes | best step | PE at the best step |" in text
     assert "| `ttp_plus` | 400 | 7 | 400 | 0.40 [0.30, 0.50] | 0.40 [0.30, 0.50] |" in text
-    assert "Made by `kitchen-prefs reproduce learning`; data version" in text
+    assert "`kitchen-prefs reproduce learning` made the figures; data version" in text
 
 
 def test_the_picture_has_a_line_for_each_recipe(machine, tmp_path):

@@ -1,9 +1,8 @@
-"""The tables: their names, their yardstick and the paper's values."""
+"""The tables: their names and the paper's values."""
 
 import pytest
 
 from kitchen_prefs_experiments.paper.paper_tables import TABLES, get_table
-from kitchen_prefs_experiments.paper.results_page import YARDSTICK
 from kitchen_prefs_experiments.paper.table_types import Table
 
 # All but those of learning curves.
@@ -13,12 +12,6 @@ POLICY_TABLES = {name: table for name, table in TABLES.items() if isinstance(tab
 def test_a_table_that_does_not_exist_suggests_the_nearest():
     with pytest.raises(ValueError, match="Did you mean 'attributes'"):
         get_table("atributes")
-
-
-def test_a_table_of_several_groups_has_the_yardstick():
-    several = [table for table in POLICY_TABLES.values() if len(table.groups) > 1]
-    assert several
-    assert all(YARDSTICK in table.rows for table in several)
 
 
 @pytest.mark.parametrize("name", POLICY_TABLES)

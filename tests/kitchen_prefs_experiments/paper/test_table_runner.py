@@ -41,6 +41,7 @@ def test_tables_that_share_a_policy_evaluate_it_one_after_the_other(tmp_path, mo
     assert most == [1, 1, 1, 1]
 
 
+@pytest.mark.lerobot
 @pytest.mark.slow
 def test_a_network_is_fine_tuned_on_one_demonstration(home, monkeypatch):
     monkeypatch.setattr(FineTuning, "trainings", property(_first_one(FineTuning.trainings.fget)))
@@ -71,6 +72,7 @@ def _first_one(trainings):
     return lambda self: trainings(self)[:1]
 
 
+@pytest.mark.lerobot
 @pytest.mark.slow
 def test_a_history_is_trained_and_measured_on_its_preference(home):
     tiny = Training(
