@@ -14,6 +14,8 @@ A prompt is a whole demonstration: the sets of all its decisions, one below the 
 fourteenth column that marks the row which each decision chose.
 """
 
+from typing import Any
+
 import numpy as np
 
 EXTENTS = slice(0, 3)
@@ -64,21 +66,30 @@ def unpad(instances: np.ndarray) -> np.ndarray:
     Returns:
         The rows that are objects or places, (n, D).
     """
-    return instances[instances[:, IS_OBJECT] + instances[:, IS_PLACE] > 0]
+    return instances[is_real(instances)]
 
 
-def is_place_decision(rows: np.ndarray) -> bool:
-    """Whether a set, (n, 13), belongs to a place decision: it has places."""
-    return bool(rows[:, IS_PLACE].any())
+# The following take NumPy arrays and torch tensors alike, with any number of leading dimensions.
 
 
-def choosable(rows: np.ndarray) -> np.ndarray:
-    """The rows that a decision may choose: the places if there are any, else the objects.
+def is_real(rows: Any) -> Any:
+    """Which rows, (..., D), are objects or places and not padding, (...) bool."""
+    return rows[..., IS_OBJECT] + rows[..., IS_PLACE] > 0
+
+
+def is_place_decision(sets: Any) -> Any:
+    """Which sets, (..., N, D), belong to place decisions, those with places, (...) bool."""
+    return (sets[..., IS_PLACE] > 0).any(-1)
+
+
+def choosable(sets: Any) -> Any:
+    """The rows that decisions may choose: the places if there are any, else the objects.
 
     Args:
-        rows: A set, (n, 13), padded or not.
+        sets: Sets, padded or not, (..., N, D).
 
     Returns:
-        A mask, (n,) bool.
+        A mask, (..., N) bool.
     """
-    return rows[:, IS_PLACE if is_place_decision(rows) else IS_OBJECT] > 0
+    is_place, is_object = sets[..., IS_PLACE] > 0, sets[..., IS_OBJECT] > 0
+    return is_place | (is_object & ~is_place_decision(sets)[..., None])

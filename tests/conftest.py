@@ -1,18 +1,48 @@
-"""A hub for all tests, and how the processes share the cores: the longest files first."""
+"""What all tests share: a hub, what is made once a run, and how the workers share the tests."""
 
 import os
+import shutil
 from collections import Counter
 
 import pytest
+from filelock import FileLock
 from hub_server import running_hub
 
 os.environ.setdefault("OMP_NUM_THREADS", "1")  # for torch
 
 
 def pytest_collection_modifyitems(items):
-    """Put the files with the most slow tests first, so that none is left for the end."""
+    """Put the files with the most slow tests first, and keep together what shares a fixture.
+
+    A fixture of a module is made once for the worker that has its tests; any worker may run any
+    other test.
+    """
     slow = Counter(item.path for item in items if item.get_closest_marker("slow"))
     items.sort(key=lambda item: -slow[item.path])
+    for item in items:
+        fixtures = item._fixtureinfo.name2fixturedefs.values()
+        if any(definitions[-1].scope == "module" for definitions in fixtures):
+            item.add_marker(pytest.mark.xdist_group(item.path.relative_to(item.config.rootpath)))
+
+
+@pytest.fixture(scope="session")
+def made_once(tmp_path_factory, worker_id):
+    """Makes a folder once a run; the other workers wait for it."""
+    alone = worker_id == "master"
+    base = tmp_path_factory.getbasetemp()
+    shared = base if alone else base.parent
+
+    def make(name, fill):
+        folder, made = shared / name, shared / f"{name}.made"
+        with FileLock(shared / f"{name}.lock"):
+            if not made.exists():
+                shutil.rmtree(folder, ignore_errors=True)
+                folder.mkdir()
+                fill(folder)
+                made.touch()
+        return folder
+
+    return make
 
 
 @pytest.fixture

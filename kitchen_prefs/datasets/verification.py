@@ -141,10 +141,7 @@ def _check_rows(data: Data) -> None:
     chosen = data.columns["chosen_index"]  # (F,)
     if chosen.min() < 0 or chosen.max() >= instances.CAPACITY:
         raise ValueError("a chosen index lies outside the instance set.")
-    places = sets[:, :, instances.IS_PLACE] > 0  # (F, N)
-    objects = sets[:, :, instances.IS_OBJECT] > 0  # (F, N)
-    choosable = np.where(places.any(1, keepdims=True), places, objects)  # (F, N)
-    if not choosable[np.arange(len(chosen)), chosen].all():
+    if not instances.choosable(sets)[np.arange(len(chosen)), chosen].all():
         raise ValueError("a chosen index points to a row that the decision may not choose.")
 
 

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import torch
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
@@ -34,6 +35,16 @@ def test_a_decision_chooses_places_if_there_are_any(rows):
     wanted = instances.IS_PLACE if instances.is_place_decision(rows) else instances.IS_OBJECT
     np.testing.assert_array_equal(mask[: len(rows)], rows[:, wanted] > 0)
     assert not mask[len(rows) :].any()
+
+
+@pytest.mark.parametrize("kind", [np.asarray, torch.from_numpy], ids=["numpy", "torch"])
+@given(st.lists(sets(), min_size=1, max_size=4))
+def test_a_batch_is_treated_like_each_of_its_sets(kind, several):
+    alone = [instances.pack(rows) for rows in several]
+    batch = kind(np.stack(alone)[:, None])  # (B, 1, N, 13)
+    for function in (instances.is_real, instances.is_place_decision, instances.choosable):
+        expected = np.stack([function(rows) for rows in alone])[:, None]
+        np.testing.assert_array_equal(function(batch), expected)
 
 
 def test_too_large_a_set_is_refused():

@@ -1,18 +1,18 @@
 """Submissions and entries whose every action is the expert's, whole ones and small ones."""
 
 import bz2
-import runpy
 import sys
 from dataclasses import replace
-from pathlib import Path
+from shutil import copytree
 
 import pytest
+from short_splits import SESSIONS, short_splits
 
 from kitchen_prefs import instances
 from kitchen_prefs.cli import main
 from kitchen_prefs.envs.episode_simulator import EpisodeSimulator
 from kitchen_prefs.simulation.sessions import expert_trajectory, make_session
-from kitchen_prefs.splits import SPLITS, TEST_SPLITS, get_split
+from kitchen_prefs.splits import TEST_SPLITS, get_split
 from kitchen_prefs_leaderboard.replay import to_jsonl, write_line
 from kitchen_prefs_leaderboard.scoring import Entry
 from kitchen_prefs_leaderboard.submission_format import ACTIONS, DESCRIPTION, Policy
@@ -44,45 +44,44 @@ def description(**about):
 
 
 @pytest.fixture(scope="session")
-def expert_files():
-    """The files of an honest submission, by name."""
-    assert get_split("seen").sessions == 70, "few_sessions was asked for before"
-    files = {}
-    for split in TEST_SPLITS:
-        sessions = range(get_split(split).sessions)
-        lines = [write_line(played_by_the_expert(split, index)) for index in sessions]
-        files[ACTIONS[split]] = bz2.compress(to_jsonl(lines))
-    files[DESCRIPTION] = description().model_dump_json().encode()
-    return files
+def expert_submission(made_once):
+    """The folder of an honest submission, made once a run; it must stay as it is."""
+
+    def fill(folder):
+        for split in TEST_SPLITS:
+            sessions = range(get_split(split).sessions)
+            lines = [write_line(played_by_the_expert(split, index)) for index in sessions]
+            (folder / ACTIONS[split]).write_bytes(bz2.compress(to_jsonl(lines)))
+        (folder / DESCRIPTION).write_text(description().model_dump_json())
+
+    return made_once("expert_submission", fill)
 
 
 @pytest.fixture
-def submission(expert_files, tmp_path):
-    """A folder with an honest submission, to be tampered with."""
-    folder = tmp_path / "submission"
-    folder.mkdir()
-    for name, content in expert_files.items():
-        (folder / name).write_bytes(content)
-    return folder
+def submission(expert_submission, tmp_path):
+    """A copy of the honest submission, to be tampered with."""
+    return copytree(expert_submission, tmp_path / "submission")
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture
 def few_sessions():
-    """Cuts the test splits down to six sessions; the folder does the same to other programs."""
-    folder = Path(__file__).with_name("few_sessions")
-    whole = dict(SPLITS)
-    runpy.run_path(str(folder / "sitecustomize.py"))
-    yield folder
-    SPLITS.update(whole)
+    """Cuts the test splits down to six sessions."""
+    with short_splits():
+        yield
 
 
-@pytest.fixture(scope="module")
-def few_episodes(few_sessions):
-    """Gives the expert's episodes, of which some on the split `seen` pack nothing."""
-    perfect = {
-        split: [played_by_the_expert(split, i) for i in range(get_split(split).sessions)]
+@pytest.fixture(scope="session")
+def perfect():
+    """The expert's episodes of the first six sessions of each test split."""
+    return {
+        split: [played_by_the_expert(split, index) for index in range(SESSIONS)]
         for split in TEST_SPLITS
     }
+
+
+@pytest.fixture(scope="session")
+def few_episodes(perfect):
+    """Gives the expert's episodes, of which some on the split `seen` pack nothing."""
 
     def give(worse=(), salt=0):
         seen = [replace(e, placed=(0, 0)) if e.session in worse else e for e in perfect["seen"]]
@@ -94,7 +93,7 @@ def few_episodes(few_sessions):
     return give
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def make_entry(few_episodes):
     """Makes an entry of those episodes; its digest is one letter, repeated."""
 

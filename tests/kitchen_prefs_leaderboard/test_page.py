@@ -25,6 +25,7 @@ HTML_NAME = "<img src=x onerror=document.title='run'></script><b>"
 PHONE = {"width": 390, "height": 844}
 
 pytestmark = [
+    pytest.mark.browser,
     pytest.mark.slow,
     pytest.mark.skipif(not CHROMIUM.exists(), reason="needs Debian's chromium"),
 ]
@@ -53,12 +54,9 @@ def played_carelessly(split, index):
 
 
 @pytest.fixture(scope="module")
-def entries(expert_files, tmp_path_factory):
+def entries(expert_submission):
     """The expert, which was run again, and three more on two tracks, which were not."""
-    folder = tmp_path_factory.mktemp("expert")
-    for name, content in expert_files.items():
-        (folder / name).write_bytes(content)
-    (expert,) = score_submissions([folder], 1)
+    (expert,) = score_submissions([expert_submission], 1)
     careless = {
         split: [played_carelessly(split, i) for i in range(get_split(split).sessions)]
         for split in TEST_SPLITS

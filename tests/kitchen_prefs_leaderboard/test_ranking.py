@@ -87,6 +87,7 @@ def test_tracks_are_tables_of_their_own(make_entry, shown):
     }
 
 
+@pytest.mark.usefixtures("few_sessions")
 def test_rows_of_another_version_of_the_data_are_refused(make_entry, few_episodes, tmp_path):
     folders = [tmp_path / "ours", tmp_path / "theirs"]
     for folder in folders:

@@ -13,12 +13,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from rich.console import Console
+from short_splits import SESSIONS, short_splits
 
 from kitchen_prefs import instances
 from kitchen_prefs.envs.episode_simulator import EpisodeSimulator
 from kitchen_prefs.metrics import METRICS, mean_of_splits, summarise
 from kitchen_prefs.simulation.sessions import make_session
-from kitchen_prefs.splits import TEST_SPLITS, get_split
+from kitchen_prefs.splits import TEST_SPLITS
 from kitchen_prefs_leaderboard.replay import replay, write_line
 from kitchen_prefs_leaderboard.score_formats import to_csv, to_json, to_tables
 from kitchen_prefs_leaderboard.scoring import score_submissions
@@ -41,10 +42,10 @@ def played_at_random(split, index, seed, jitter=0.0):
 
 
 @pytest.fixture(scope="module")
-def played(few_sessions):
+def played():
     """Episodes that were played at random."""
     return {
-        split: [played_at_random(split, i, seed=i) for i in range(get_split(split).sessions)]
+        split: [played_at_random(split, i, seed=i) for i in range(SESSIONS)]
         for split in TEST_SPLITS
     }
 
@@ -60,7 +61,8 @@ def folder(played, make_entry, tmp_path_factory):
 @pytest.fixture(scope="module")
 def entry(folder):
     """That submission, scored."""
-    return score_submissions([folder], 1)[0]
+    with short_splits():
+        return score_submissions([folder], 1)[0]
 
 
 def printed(entry, by):
@@ -92,6 +94,7 @@ def test_a_submission_of_plain_python_is_scored(tmp_path):
         assert metrics["Success"]["mean"] == 0
 
 
+@pytest.mark.usefixtures("few_sessions")
 @pytest.mark.parametrize("by", [None, "preference", "count"])
 def test_two_scorings_print_the_same_bytes(folder, entry, by):
     assert printed(score_submissions([folder], 2)[0], by) == printed(entry, by)
@@ -166,7 +169,7 @@ def test_what_is_written_of_an_episode_is_that_episode(split, index, seed, jitte
     assert values["ED"] <= values["ED_c"] <= 1
 
 
-def test_an_action_too_far_away_becomes_the_pose_that_it_chose(few_episodes):
+def test_an_action_too_far_away_becomes_the_pose_that_it_chose():
     simulator = EpisodeSimulator(make_session("seen", 0))
     while not (simulator.terminated or simulator.truncated):
         simulator.act((5000.0, -5000.0, 0.0, 1.0, 0.0, 0.0, 0.0))

@@ -9,6 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from short_splits import short_splits
 
 from kitchen_prefs.cli import command_line
 from kitchen_prefs.datasets.manifest import published_fingerprint
@@ -21,6 +22,7 @@ from kitchen_prefs_leaderboard.submission_format import ACTIONS, installed_packa
 from kitchen_prefs_leaderboard.submission_writing import policy_of, training_of
 from kitchen_prefs_leaderboard.verification import read_verifications
 
+SHORT_SPLITS = Path(__file__).parents[1] / "short_splits_of_programs"
 CHECKPOINT = Path(__file__).parents[2] / "policies" / "checkpoints" / "ttp_quick"
 SYMBOLIC = ("--policy.type=rules", "--policy.rule=symbolic")
 SUBMIT = (
@@ -28,31 +30,37 @@ SUBMIT = (
     *("--author=A. Person", "--author=B. Person", *SYMBOLIC),
 )
 
-
-@pytest.fixture(scope="module")
-def submitted(few_sessions, tmp_path_factory):
-    """What the program itself submits, and beside it the episodes that it played."""
-    out = tmp_path_factory.mktemp("submit") / "symbolic"
-    done = subprocess.run(
-        [sys.executable, "-m", "kitchen_prefs.cli", *SUBMIT, f"--out={out}", "--jobs=2"],
-        check=False,
-        env={**os.environ, "PYTHONPATH": str(few_sessions)},
-        capture_output=True,
-        text=True,
-    )
-    assert done.returncode == 0, done.stderr
-    assert "Playing, many_preferences: 100%" in done.stderr
-    return out
+pytestmark = pytest.mark.usefixtures("few_sessions")
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
+def submitted(made_once):
+    """What the program itself submits, and beside it the episodes that it rolled out."""
+
+    def fill(folder):
+        out = f"--out={folder / 'symbolic'}"
+        done = subprocess.run(
+            [sys.executable, "-m", "kitchen_prefs.cli", *SUBMIT, out, "--jobs=2"],
+            check=False,
+            env={**os.environ, "PYTHONPATH": str(SHORT_SPLITS)},
+            capture_output=True,
+            text=True,
+        )
+        assert done.returncode == 0, done.stderr
+        assert "Playing, many_preferences: 100%" in done.stderr
+
+    return made_once("submitted", fill) / "symbolic"
+
+
+@pytest.fixture(scope="session")
 def entry(submitted):
     """That submission, replayed."""
-    return score_submissions([submitted], 2)[0]
+    with short_splits():
+        return score_submissions([submitted], 2)[0]
 
 
 @pytest.fixture
-def here(few_sessions, monkeypatch):
+def here(monkeypatch):
     """Lets splits be played in this process, as another would have to load LeRobot."""
 
     def run_module(module, arguments, log, name):
@@ -70,6 +78,7 @@ def episodes_of(submitted):
     return submitted.with_name(f"{submitted.name}-episodes")
 
 
+@pytest.mark.lerobot
 @pytest.mark.slow
 def test_a_submission_says_who_acted_and_holds_no_score(submitted):
     assert contents(submitted).keys() == {"submission.json", *ACTIONS.values()}
@@ -96,6 +105,7 @@ def test_a_submission_says_who_acted_and_holds_no_score(submitted):
     }
 
 
+@pytest.mark.lerobot
 @pytest.mark.slow
 def test_its_actions_lead_where_they_led_when_they_were_played(submitted, entry):
     folder = episodes_of(submitted)
@@ -108,6 +118,7 @@ def test_its_actions_lead_where_they_led_when_they_were_played(submitted, entry)
         assert {name: vars(interval) for name, interval in entry.metrics[split].items()} == said
 
 
+@pytest.mark.lerobot
 @pytest.mark.slow
 def test_its_actions_are_rounded(submitted):
     for file in ACTIONS.values():
@@ -116,6 +127,7 @@ def test_its_actions_are_rounded(submitted):
             assert numbers == [round(number, 4) for number in numbers]
 
 
+@pytest.mark.lerobot
 @pytest.mark.slow
 def test_submitting_again_plays_what_is_missing_and_gives_the_same_bytes(
     submitted, here, kitchen_prefs, tmp_path
@@ -174,6 +186,8 @@ def test_a_link_is_not_replaced(kitchen_prefs, tmp_path):
     assert "is something else than a submission; give another --out." in said
 
 
+@pytest.mark.lerobot
+@pytest.mark.slow
 def test_episodes_of_another_policy_are_not_submitted(submitted, here, kitchen_prefs, tmp_path):
     header = (episodes_of(submitted) / "seen.header.json").read_text()
     kept = episodes_of(tmp_path / "out")
@@ -199,6 +213,7 @@ def test_a_checkpoint_is_named_by_what_it_learned_and_how():
     )
 
 
+@pytest.mark.lerobot
 @pytest.mark.slow
 def test_a_rerun_by_the_same_policy_confirms_and_another_is_refused(
     submitted, entry, here, kitchen_prefs, tmp_path, capsys
@@ -237,6 +252,7 @@ def test_processes_share_the_splits(jobs):
     assert len(shares) <= jobs
 
 
+@pytest.mark.lerobot
 @pytest.mark.slow
 def test_who_chose_the_actions_only_a_rerun_tells(submitted, kitchen_prefs, capsys):
     assert kitchen_prefs("leaderboard", "verify", submitted) == 0

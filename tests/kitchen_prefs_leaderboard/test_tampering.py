@@ -30,6 +30,7 @@ def refused(folder, message):
     return str(error.value)
 
 
+@pytest.mark.slow
 def test_an_honest_submission_is_the_expert(submission):
     (entry,) = score_submissions([submission], 1)
     for split, metrics in entry.metrics.items():
@@ -39,6 +40,7 @@ def test_an_honest_submission_is_the_expert(submission):
         )
 
 
+@pytest.mark.slow
 def test_the_same_files_give_the_same_entry(submission):
     first, second = (score_submissions([submission], 1)[0] for _ in range(2))
     assert first == second

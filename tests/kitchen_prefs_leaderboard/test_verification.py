@@ -94,6 +94,7 @@ def test_what_is_no_record_is_said_in_one_sentence(content, tmp_path):
         read_verifications(tmp_path)
 
 
+@pytest.mark.usefixtures("few_sessions")
 def test_a_changed_byte_of_a_submission_takes_its_rank_away(
     make_entry, few_episodes, found, tmp_path
 ):

@@ -1,17 +1,29 @@
-"""Demonstrations of four sessions, and all decisions of two of them paired with prompts."""
+"""A small data set, demonstrations of four sessions, and decisions paired with prompts."""
 
 import numpy as np
 import pytest
 import torch
+from lerobot.datasets import LeRobotDataset
 
+from kitchen_prefs.datasets import make_dataset
 from kitchen_prefs.envs.demonstrations import demonstrate, prompt_of
-from kitchen_prefs.instances import IS_OBJECT, IS_PLACE
+from kitchen_prefs.instances import IS_PLACE, is_place_decision, is_real, unpad
 from kitchen_prefs.simulation.sessions import make_session
 from lerobot_policy_kitchen_prefs.common.categories import Categories
 from lerobot_policy_kitchen_prefs.common.demonstration_store import PLACE, DemonstrationStore
 from lerobot_policy_kitchen_prefs.common.instance_sets import chosen_rows
 from lerobot_policy_kitchen_prefs.ttp.prompt_pairing import make_pairs
 from lerobot_policy_kitchen_prefs.ttp.rack_poses import RackPoses
+
+NAME = "dishwasher-train-p2-d3-v1"  # two preferences, three demonstrations each
+
+
+@pytest.fixture(scope="session")
+def dataset(tmp_path_factory):
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("HF_LEROBOT_HOME", str(tmp_path_factory.mktemp("home")))
+        root = make_dataset(NAME)
+    return LeRobotDataset(f"kitchen_prefs/{NAME}", root=root)
 
 
 @pytest.fixture(scope="session")
@@ -21,8 +33,7 @@ def sessions():
 
 @pytest.fixture(scope="session")
 def demonstrations(sessions):
-    rows = [prompt_of(session) for session in sessions]
-    rows = [prompt[prompt[:, IS_OBJECT] + prompt[:, IS_PLACE] > 0] for prompt in rows]
+    rows = [unpad(prompt_of(session)) for session in sessions]
     labels = np.array([session.label for session in sessions])
     lengths = np.array([len(r) for r in rows])
     rows = np.concatenate(rows)
@@ -32,12 +43,12 @@ def demonstrations(sessions):
 
 @pytest.fixture(scope="session")
 def categories(demonstrations):
-    return Categories.of(demonstrations)
+    return Categories.from_demonstrations(demonstrations)
 
 
 @pytest.fixture(scope="session")
-def stands(demonstrations, categories):
-    return RackPoses.of(demonstrations, categories)
+def rack_poses(demonstrations, categories):
+    return RackPoses.from_demonstrations(demonstrations, categories)
 
 
 @pytest.fixture(scope="session")
@@ -54,5 +65,5 @@ def pairs(sessions, demonstrations):
 @pytest.fixture(scope="session")
 def place_sets(pairs):
     """Sets of place decisions, as many rows as the longest has, (B, N, 13)."""
-    sets = pairs.sets[(pairs.sets[..., IS_PLACE] > 0).any(dim=1)]
-    return sets[:, : int((sets != 0).any(dim=-1).sum(dim=1).max())]
+    sets = pairs.sets[is_place_decision(pairs.sets)]
+    return sets[:, : int(is_real(sets).sum(dim=1).max())]

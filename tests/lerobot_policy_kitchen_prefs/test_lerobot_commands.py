@@ -21,17 +21,31 @@ TRAIN = "lerobot.scripts.lerobot_train"
 EVAL = "lerobot.scripts.lerobot_eval"
 # A small TTP, so that a step takes milliseconds.
 SMALL_TTP = ("--policy.dim_pose=16", "--policy.dim_extents=8", "--policy.dim_time=4")
+TRAINED = "One more is trained."
+TRAIN_ALL = f"""
+import json
+import sys
+
+from lerobot.scripts.lerobot_train import main
+
+for command in json.loads(sys.argv[1]):
+    sys.argv[1:] = command
+    main()
+    print({TRAINED!r}, file=sys.stderr)
+"""
 COMMON = ("--policy.device=cpu", "--policy.push_to_hub=false", "--num_workers=0", "--log_freq=1")
 
 
-@pytest.fixture(scope="module")
-def home(tmp_path_factory):
+@pytest.fixture(scope="session")
+def home(made_once):
     """A home with a small data set to train on."""
-    folder = tmp_path_factory.mktemp("home")
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("HF_LEROBOT_HOME", str(folder))
-        make_dataset(DATASET)
-    return folder
+
+    def fill(folder):
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setenv("HF_LEROBOT_HOME", str(folder))
+            make_dataset(DATASET)
+
+    return made_once("lerobot_home", fill)
 
 
 def run(home, module, *arguments):
@@ -49,17 +63,21 @@ def run(home, module, *arguments):
     return done.stderr + done.stdout
 
 
-@pytest.fixture(scope="module")
-def trained(home):
+@pytest.fixture(scope="session")
+def trained(home, made_once):
     """A run of four steps that saved a checkpoint after two."""
-    data = f"--dataset.repo_id=kitchen_prefs/{DATASET}"
-    sizes = (*SMALL_TTP, "--batch_size=4", "--steps=4", "--save_freq=2")
-    output = f"--output_dir={home / 'run'}"
-    log = run(home, TRAIN, "--policy.type=ttp", data, output, *sizes, *COMMON)
-    assert "step:4" in log
-    return home / "run"
+
+    def fill(folder):
+        data = f"--dataset.repo_id=kitchen_prefs/{DATASET}"
+        sizes = (*SMALL_TTP, "--batch_size=4", "--steps=4", "--save_freq=2")
+        output = f"--output_dir={folder / 'run'}"
+        log = run(home, TRAIN, "--policy.type=ttp", data, output, *sizes, *COMMON)
+        assert "step:4" in log
+
+    return made_once("lerobot_run", fill) / "run"
 
 
+@pytest.mark.lerobot
 @pytest.mark.slow
 def test_ttp_resumes_where_it_stopped(home, trained):
     config = trained / "checkpoints" / "last" / "pretrained_model" / "train_config.json"
@@ -70,6 +88,7 @@ def test_ttp_resumes_where_it_stopped(home, trained):
     assert step["step"] == 6
 
 
+@pytest.mark.lerobot
 @pytest.mark.slow
 def test_ttp_fine_tunes_from_a_checkpoint(home, trained):
     log = run(
@@ -85,8 +104,9 @@ def test_ttp_fine_tunes_from_a_checkpoint(home, trained):
     assert "step:2" in log
 
 
+@pytest.mark.lerobot
 @pytest.mark.slow
-def test_lerobot_eval_plays_a_checkpoint(home, trained):
+def test_lerobot_eval_rolls_out_a_checkpoint(home, trained):
     out = home / "eval"
     run(
         home,
@@ -104,8 +124,9 @@ def test_lerobot_eval_plays_a_checkpoint(home, trained):
     assert info["overall"]["n_episodes"] == 3
 
 
+@pytest.mark.lerobot
 @pytest.mark.slow
-def test_evaluate_plays_a_checkpoint_and_the_expert(home, trained):
+def test_evaluate_rolls_out_a_checkpoint_and_the_expert(home, trained):
     checkpoint = f"--policy.path={trained}/checkpoints/000004/pretrained_model"
     for policy in ((checkpoint,), ("--policy.type=rules", "--policy.rule=expert")):
         out = home / policy[-1].replace("/", "-")
@@ -114,6 +135,7 @@ def test_evaluate_plays_a_checkpoint_and_the_expert(home, trained):
         assert len(read_episodes(out / "noisy.jsonl")) == 60
 
 
+@pytest.mark.lerobot
 @pytest.mark.slow
 def test_lerobot_eval_gives_the_expert_full_success(home):
     run(
@@ -132,36 +154,40 @@ def test_lerobot_eval_gives_the_expert_full_success(home):
     assert info["overall"]["pc_success"] == 100
 
 
+@pytest.mark.lerobot
 @pytest.mark.slow
-def test_lerobots_act_trains_and_plays_unchanged(home):
-    train_and_play(home, "act", "--policy.dim_model=32", "--policy.dim_feedforward=32")
+def test_lerobots_act_trains_and_rolls_out_unchanged(home):
+    train_and_roll_out(home, "act", "--policy.dim_model=32", "--policy.dim_feedforward=32")
 
 
+@pytest.mark.lerobot
 @pytest.mark.slow
-def test_lerobots_diffusion_trains_and_plays_unchanged(home):
+def test_lerobots_diffusion_trains_and_rolls_out_unchanged(home):
     pytest.importorskip("diffusers", reason="wants `uv run --extra diffusion`")
     small = ("--policy.down_dims=[16, 32]", "--policy.num_inference_steps=2")
-    train_and_play(home, "diffusion", *small)
+    train_and_roll_out(home, "diffusion", *small)
 
 
+@pytest.mark.lerobot
 @pytest.mark.slow
-def test_ttp_trains_and_plays_on_the_final_state_alone(home):
-    train_and_play(home, "ttp_final", *SMALL_TTP, "--policy.dim_feedforward=32")
+def test_ttp_trains_and_rolls_out_on_the_final_state_alone(home):
+    train_and_roll_out(home, "ttp_final", *SMALL_TTP, "--policy.dim_feedforward=32")
 
 
-def train_and_play(home, recipe, *small):
+def train_and_roll_out(home, recipe, *small):
     config = f"--config_path={recipe_file(recipe)}"
     data, output = f"--dataset.repo_id=kitchen_prefs/{DATASET}", f"--output_dir={home / recipe}"
     log = run(home, TRAIN, config, data, output, *small, "--batch_size=4", "--steps=2", *COMMON)
     assert "step:2" in log
-    played = f"--policy.path={home / recipe / 'checkpoints' / 'last' / 'pretrained_model'}"
+    policy = f"--policy.path={home / recipe / 'checkpoints' / 'last' / 'pretrained_model'}"
     out = f"--out={home / recipe / 'evaluation'}"
-    run(home, "kitchen_prefs.cli", "evaluate", played, "--split=noisy", out, "--batch-size=30")
+    run(home, "kitchen_prefs.cli", "evaluate", policy, "--split=noisy", out, "--batch-size=30")
     assert len(read_episodes(home / recipe / "evaluation" / "noisy.jsonl")) == 60
 
 
+@pytest.mark.lerobot
 @pytest.mark.slow
-def test_the_graph_network_resumes_and_plays_on_the_privileged_track(home):
+def test_the_graph_network_resumes_and_rolls_out_on_the_privileged_track(home):
     recipe = f"--config_path={recipe_file('gnn_tuned')}"
     data, output = f"--dataset.repo_id=kitchen_prefs/{DATASET}", f"--output_dir={home / 'gnn'}"
     sizes = ("--policy.dim=16", "--batch_size=4", "--steps=2")
@@ -169,20 +195,20 @@ def test_the_graph_network_resumes_and_plays_on_the_privileged_track(home):
     checkpoint = home / "gnn" / "checkpoints" / "last" / "pretrained_model"
     config = f"--config_path={checkpoint / 'train_config.json'}"
     assert "step:3" in run(home, TRAIN, config, "--resume=true", "--steps=3")
-    played, out = f"--policy.path={checkpoint}", f"--out={home / 'gnn-evaluation'}"
-    run(home, "kitchen_prefs.cli", "evaluate", played, "--split=noisy", out, "--batch-size=30")
+    policy, out = f"--policy.path={checkpoint}", f"--out={home / 'gnn-evaluation'}"
+    run(home, "kitchen_prefs.cli", "evaluate", policy, "--split=noisy", out, "--batch-size=30")
     summary = json.loads((home / "gnn-evaluation" / "noisy.json").read_text())
     assert summary["episodes"] == 60
     assert summary["conditions"]["track"] == "privileged"
 
 
+@pytest.mark.lerobot
 @pytest.mark.slow
 def test_the_recipes_train(home):
-    # ttp_plus goes on from ttp_quick.
-    for recipe in ("ttp_quick", "ttp_plus", "ttp_paper", "gnn_paper"):
-        log = run(
-            home,
-            TRAIN,
+    # ttp_plus goes on from ttp_quick. One start of LeRobot trains them all.
+    recipes = ("ttp_quick", "ttp_plus", "ttp_paper", "gnn_paper")
+    commands = [
+        (
             f"--config_path={recipe_file(recipe)}",
             f"--dataset.repo_id=kitchen_prefs/{DATASET}",
             f"--output_dir=outputs/{recipe}",
@@ -190,10 +216,18 @@ def test_the_recipes_train(home):
             "--steps=2",
             "--log_freq=1",
         )
-        assert "step:2" in log
-        assert "pick_accuracy:" in log
+        for recipe in recipes
+    ]
+    (home / "train_all.py").write_text(TRAIN_ALL)
+    log = run(home, "train_all", json.dumps(commands))
+    of_recipes = log.split(TRAINED)[:-1]
+    assert len(of_recipes) == len(recipes)
+    for of_recipe in of_recipes:
+        assert "step:2" in of_recipe
+        assert "pick_accuracy:" in of_recipe
 
 
+@pytest.mark.lerobot
 @pytest.mark.slow
 def test_mixed_precision_trains_weights_of_float32(home):
     log = run(

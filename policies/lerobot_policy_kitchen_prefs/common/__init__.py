@@ -1,1 +1,1 @@
-"""What policies that look at sets of instances share: batches of sets, what rows tell of dishes."""
+"""What several policies share: instance sets, demonstrations, collisions and failed choices."""

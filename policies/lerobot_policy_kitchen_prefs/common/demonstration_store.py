@@ -1,4 +1,4 @@
-"""The demonstrations of the data set that is trained on, in memory."""
+"""The demonstrations of the training data set, in memory."""
 
 from typing import Self
 
@@ -8,7 +8,7 @@ import pyarrow as pa
 from lerobot.datasets import LeRobotDataset, LeRobotDatasetMetadata
 
 from kitchen_prefs.envs.lerobot_env import OBS_INSTANCES
-from kitchen_prefs.instances import COLUMNS, EXTENTS, IS_OBJECT, IS_PLACE, POSE, PROMPT_COLUMNS
+from kitchen_prefs.instances import COLUMNS, EXTENTS, IS_PLACE, POSE, PROMPT_COLUMNS, is_real
 
 PREFERENCE = "preference"
 CHOSEN_INDEX = "chosen_index"
@@ -16,13 +16,13 @@ PLACE = slice(EXTENTS.start, POSE.stop)  # the columns of a place: the dish's ex
 
 
 class DemonstrationStore:
-    """Whole episodes, one below the other.
+    """Whole episodes, concatenated.
 
     Attributes:
         rows: The rows of all decisions of all episodes, (R, 14) float32.
         preference: The preference's label of each episode, (E,) int64. On the standard track it
-            pairs prompts with situations, and no network sees it.
-        places: All different places for dishes, chosen or not: extents and pose, (K, 10) float32.
+            pairs prompts with situations and is no input to a network.
+        places: All distinct places for dishes, chosen or not: extents and pose, (K, 10) float32.
     """
 
     def __init__(
@@ -34,12 +34,12 @@ class DemonstrationStore:
             rows: The rows of all decisions of all episodes, chosen ones marked, (R, 14) float32.
             lengths: The number of rows of each episode, (E,) int.
             preference: The preference's label of each episode, (E,) int64.
-            places: All different places for dishes, (K, 10) float32.
+            places: All distinct places for dishes, (K, 10) float32.
         """
         self.rows = rows
         self.preference = preference
         self.places = places
-        self._of_episode = np.split(rows, np.cumsum(lengths)[:-1])
+        self._episodes = np.split(rows, np.cumsum(lengths)[:-1])
 
     @classmethod
     def read(cls, meta: LeRobotDatasetMetadata, chosen_only: bool) -> Self:
@@ -47,7 +47,7 @@ class DemonstrationStore:
 
         Args:
             meta: The data set's metadata.
-            chosen_only: Whether to keep the chosen row of each decision alone.
+            chosen_only: Whether to keep only the chosen row of each decision.
 
         Returns:
             The demonstrations.
@@ -59,15 +59,15 @@ class DemonstrationStore:
         missing = sorted(set(wanted) - set(meta.features))
         if missing:
             raise ValueError(
-                f"The data set {meta.repo_id!r} has no column {missing[0]!r}, which demonstrations "
-                "have; train on a data set of kitchen_prefs."
+                f"The data set {meta.repo_id!r} has no column {missing[0]!r}; train on a data set "
+                "of kitchen_prefs, which has it."
             )
         frames = LeRobotDataset(meta.repo_id, root=meta.root).hf_dataset.with_format("arrow")
         table = frames.select_columns(wanted)[:]
         chosen, preference, episode = (_numbers(table[name]) for name in wanted[1:])
         sets = _numbers(table[OBS_INSTANCES]).reshape(len(chosen), -1, COLUMNS)  # (T, N, 13)
         marks = np.arange(sets.shape[1]) == chosen[:, None]  # (T, N)
-        kept = marks if chosen_only else (sets[..., IS_OBJECT] + sets[..., IS_PLACE]) > 0
+        kept = marks if chosen_only else is_real(sets)
         rows = np.concatenate([sets[kept], marks[kept][:, None]], axis=1, dtype=np.float32)
         episodes, first = np.unique(episode, return_index=True)
         lengths = np.bincount(episode, weights=kept.sum(axis=1)).astype(int)[episodes]
@@ -79,8 +79,8 @@ class DemonstrationStore:
 
         Args:
             preference: The preference's label.
-            excluded: Episodes that would prompt themselves; they are drawn only if there are no
-                others.
+            excluded: The episodes of the batch, which would prompt themselves; they are drawn only
+                if there are no others.
             generator: Source of randomness.
 
         Returns:
@@ -92,7 +92,7 @@ class DemonstrationStore:
 
     def prompts(self, episodes: list[int]) -> np.ndarray:
         """The episodes as prompts, padded to the longest of them, (G, P, 14) float32."""
-        rows = [self._of_episode[episode] for episode in episodes]
+        rows = [self._episodes[episode] for episode in episodes]
         prompts = np.zeros((len(rows), max(map(len, rows)), PROMPT_COLUMNS), dtype=np.float32)
         for prompt, filled in zip(prompts, rows, strict=True):
             prompt[: len(filled)] = filled
@@ -100,7 +100,7 @@ class DemonstrationStore:
 
 
 def _numbers(column: pa.ChunkedArray) -> np.ndarray:
-    """All numbers of a column, of however many dimensions, in one row."""
+    """All numbers of a column of any number of dimensions, flat."""
     array = column.combine_chunks()
     if isinstance(array, pa.ChunkedArray):
         array = pa.concat_arrays(array.chunks)

@@ -1,9 +1,9 @@
-"""Choices that were made in vain: remembered when acting, invented in training.
+"""Failed choices: tracked at rollout, synthesised in training.
 
-A decision that cannot be carried out changes nothing. A deterministic policy that sees the same set
-again would choose the same row for ever, so the network is shown which rows it has just chosen in
-vain. Demonstrations have no such rows, as experts do not err. Training invents them: whatever the
-expert did not choose may have been tried before.
+A decision that cannot be carried out changes nothing. A deterministic policy that observes the same
+set again would choose the same row again, for ever. So the network also takes as input which rows
+have just failed. Demonstrations contain no failures, as experts make none; training synthesises
+them: any row that the expert did not choose may have been tried before.
 """
 
 import numpy as np
@@ -11,52 +11,51 @@ import torch
 from torch import Tensor, nn
 
 from kitchen_prefs.envs.actions import METRES_PER_RADIAN
-from kitchen_prefs.instances import IS_PLACE, POSITION, QUATERNION
+from kitchen_prefs.instances import IS_PLACE, POSITION, QUATERNION, choosable
 
 from .categories import Categories
-from .instance_sets import choosable
 
 # The nearest row to the last choice is the same instance if it is this near: perception errs by a
 # centimetre each time. Dishes in a rack can be nearer than that, but then they are not the nearest.
-SAME = 0.05  # m, a turn counting as it does in the environment
+SAME = 0.05  # m, a rotation counting as it does in the environment
 # Every other situation follows on failures; then every row has failed with this probability, five
 # of the fifty places for a dish.
 SHARE_OF_SITUATIONS, SHARE_OF_ROWS = 0.5, 0.1
 
 
 class FailedChoices:
-    """What was chosen in vain since the last success, in each of B episodes."""
+    """Tracks the choices that have failed since the last success, in each of B episodes."""
 
     def __init__(self) -> None:
         """Begin with none."""
         self._choices: list[Tensor] = []  # (B, 13) each
-        self._in_vain: list[Tensor] = []  # (B,) each
+        self._has_failed: list[Tensor] = []  # (B,) each
 
     def find(self, sets: Tensor) -> Tensor:
-        """Mark the rows that have failed.
+        """Find the rows that have failed.
 
         Args:
-            sets: What is seen now, (B, N, 13). If what was chosen last can still be chosen, that
-                choice was in vain; if not, it succeeded, and all earlier failures are forgotten.
+            sets: The sets observed now, (B, N, 13). A last choice that can still be chosen has
+                failed; otherwise it succeeded, and all earlier failures are forgotten.
 
         Returns:
-            The marks, (B, N) bool.
+            A mask, (B, N) bool.
         """
         failed = torch.zeros(sets.shape[:2], dtype=torch.bool, device=sets.device)
         if not self._choices:
             return failed
         last_failed = self._same(sets, self._choices[-1]).any(dim=1)  # (B,)
-        self._in_vain = [in_vain & last_failed for in_vain in self._in_vain]
-        for choice, in_vain in zip(self._choices, self._in_vain, strict=True):
-            failed |= self._same(sets, choice) & in_vain[:, None]
+        self._has_failed = [has_failed & last_failed for has_failed in self._has_failed]
+        for choice, has_failed in zip(self._choices, self._has_failed, strict=True):
+            failed |= self._same(sets, choice) & has_failed[:, None]
         return failed
 
-    def remember(self, choices: Tensor) -> None:
-        """Remember the chosen rows, (B, 13)."""
+    def record(self, choices: Tensor) -> None:
+        """Record the rows that are chosen now, (B, 13)."""
         self._choices.append(choices)
-        self._in_vain.append(torch.ones(len(choices), dtype=torch.bool, device=choices.device))
-        while not self._in_vain[0].any():  # the last is always among them
-            del self._choices[0], self._in_vain[0]
+        self._has_failed.append(torch.ones(len(choices), dtype=torch.bool, device=choices.device))
+        while not self._has_failed[0].any():  # the last is always among them
+            del self._choices[0], self._has_failed[0]
 
     @staticmethod
     def _same(sets: Tensor, choices: Tensor) -> Tensor:
@@ -73,62 +72,55 @@ class FailedChoices:
 def synthesise_failures(
     sets: Tensor, targets: Tensor, categories: Categories, generator: np.random.Generator
 ) -> Tensor:
-    """Invent which rows have failed before the expert chose.
+    """Draw which rows have failed before the expert chose.
 
-    Where the expert chose a place, a rack or the door, that choice has not failed before. A dish
-    may have slipped from the hand.
+    A place, a rack or the door that the expert chose has not failed before. A dish may have slipped
+    from the gripper.
 
     Args:
-        sets: Sets, seen exactly, (B, N, 13).
+        sets: Sets, observed without noise, (B, N, 13).
         targets: The rows that the expert chose, (B,) int64.
         categories: The categories of dishes.
         generator: Source of randomness.
 
     Returns:
-        Marks of the rows, (B, N) bool.
+        A mask, (B, N) bool.
     """
-    chance = generator.random(sets.shape[:2], dtype=np.float32) < SHARE_OF_ROWS
-    chance &= generator.random((len(sets), 1), dtype=np.float32) < SHARE_OF_SITUATIONS
+    drawn = generator.random(sets.shape[:2], dtype=np.float32) < SHARE_OF_ROWS
+    drawn &= generator.random((len(sets), 1), dtype=np.float32) < SHARE_OF_SITUATIONS
     situations = torch.arange(len(sets), device=sets.device)
     target = sets[situations, targets]  # (B, 13)
-    graspable = categories.find(target)[1] & (target[:, IS_PLACE] == 0)  # (B,)
+    may_slip = categories.find(target)[1] & (target[:, IS_PLACE] == 0)  # (B,)
     may_fail = choosable(sets)
-    may_fail[situations, targets] = graspable
-    return torch.from_numpy(chance).to(sets.device) & may_fail
+    may_fail[situations, targets] = may_slip
+    return torch.from_numpy(drawn).to(sets.device) & may_fail
 
 
-class FailedRows(nn.Module):
-    """What a network makes of rows that were just chosen in vain."""
+class FailureEmbedding(nn.Module):
+    """A network's weights for failed choices: an embedding of the input and a penalty."""
 
     def __init__(self, dim: int) -> None:
-        """Make the mark, which begins as none, and the gate."""
+        """Make the embedding, which is zero at first, and the gate.
+
+        Args:
+            dim: The size of the network's tokens.
+        """
         super().__init__()
         self.marker = nn.Parameter(torch.zeros(dim))
         self.gate = nn.Linear(dim, 1)
 
-    def mark(self, features: Tensor, failed: Tensor) -> Tensor:
-        """Mark rows' features, (..., d), those of (...) bool, so that all others know, too."""
+    def embed(self, features: Tensor, failed: Tensor) -> Tensor:
+        """Add the embedding to rows' features, (..., d), where they have failed, (...) bool."""
         return features + failed[..., None] * self.marker
 
-    def shares(self, outputs: Tensor, failed: Tensor) -> Tensor:
-        """How far each row's score falls, by the network's outputs, (..., d) -> (...)."""
+    def penalties(self, outputs: Tensor, failed: Tensor) -> Tensor:
+        """How far the score of each row falls, from 0 to 1, by the network's outputs.
+
+        Args:
+            outputs: The network's outputs at the rows, (..., d).
+            failed: Which rows have failed, (...) bool.
+
+        Returns:
+            The penalties, (...), for `correct_scores`.
+        """
         return failed * self.gate(outputs)[..., 0].sigmoid()
-
-
-def lowered(scores: Tensor, shares: Tensor, sets: Tensor) -> Tensor:
-    """Let scores fall towards the lowest of their set.
-
-    What is subtracted does not outdo the certainty with which a row was chosen wrongly, or how near
-    to the corner a blocked place is; a fall to the bottom does.
-
-    Args:
-        scores: The scores, (B, N).
-        shares: How far each falls, from 0, not at all, to 1, below all that may be chosen, (B, N).
-        sets: What is scored, (B, N, 13).
-
-    Returns:
-        The scores, (B, N).
-    """
-    candidates = scores.detach().masked_fill(~choosable(sets), torch.inf)  # (B, N)
-    lowest = candidates.amin(dim=1, keepdim=True) - 1  # (B, 1)
-    return scores + shares * (lowest - scores)

@@ -1,25 +1,29 @@
-"""Fourier features of numbers in m and of quaternions (paper, section 2, "Instance Encoder")."""
+"""Fourier features of lengths in m and of quaternions (paper, section 2, "Instance Encoder")."""
 
 from math import pi
 
 import torch
 from torch import Tensor, nn
 
-# Fourier features: waves whose lengths halve, `FREQUENCIES` of them for each number; sine and
-# cosine make the paper's 16 features. The longest wave spans the range of the numbers once.
+# Wavelengths halve, FREQUENCIES of them for each number; sine and cosine make the paper's 16
+# features. The longest wavelength spans the range of the numbers once.
 FREQUENCIES = 8
-POSITION_RANGE = 4.0  # m, more than the counter's length; the shortest wave is 3 cm
+POSITION_RANGE = 4.0  # m, more than the counter's length; the shortest wavelength is 3 cm
 QUATERNION_RANGE = 2.0  # -1 to 1
-EXTENTS_RANGE = 1.0  # m; the shortest wave is 8 mm, so that 2.0 and 2.6 cm high plates differ
+EXTENTS_RANGE = 1.0  # m; the shortest wavelength is 8 mm, so that 2.0 and 2.6 cm high plates differ
 
 
 class FourierFeatures(nn.Module):
-    """Sines and cosines of each number at wave lengths that halve (NeRF's encoding)."""
+    """Sines and cosines of each number at wavelengths that halve (NeRF's encoding)."""
 
-    frequencies: Tensor
+    frequencies: Tensor  # (FREQUENCIES,)
 
     def __init__(self, longest: float) -> None:
-        """Make the frequencies, from the longest wave's length in the numbers' unit."""
+        """Make the frequencies.
+
+        Args:
+            longest: The longest wavelength, in the numbers' unit.
+        """
         super().__init__()
         frequencies = 2 * pi / longest * 2.0 ** torch.arange(FREQUENCIES)
         self.register_buffer("frequencies", frequencies, persistent=False)

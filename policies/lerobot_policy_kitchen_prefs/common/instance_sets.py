@@ -1,58 +1,17 @@
-"""Batches of instance sets: which rows are real, which can be chosen, which was chosen."""
+"""Batches of instance sets: which rows were chosen, and how sets are cut and grouped."""
 
 import torch
 from torch import Tensor
 
-from kitchen_prefs.instances import EXTENTS, IS_OBJECT, IS_PLACE, POSE
+from kitchen_prefs.instances import EXTENTS, IS_OBJECT, POSE, choosable, is_place_decision, is_real
 
 # m, from corner to corner: the largest dishes have 36 cm, the door and the racks more than this.
 LARGEST_DISH = 0.4
 
 
-def is_real(rows: Tensor) -> Tensor:
-    """Which rows, (..., D), are objects or places, not padding, (...) bool."""
-    return (rows[..., IS_OBJECT] + rows[..., IS_PLACE]) > 0
-
-
 def is_dish(rows: Tensor) -> Tensor:
     """Which rows, (..., D), are dishes, not places for them and not the door or a rack."""
     return (rows[..., IS_OBJECT] > 0) & (rows[..., EXTENTS].norm(dim=-1) < LARGEST_DISH)
-
-
-def is_place_decision(sets: Tensor) -> Tensor:
-    """Which sets, (B, N, 13), have places to choose from, (B,) bool."""
-    return (sets[..., IS_PLACE] > 0).any(dim=1)
-
-
-def choosable(sets: Tensor) -> Tensor:
-    """The rows that decisions may choose: the places if there are any, else the objects.
-
-    Args:
-        sets: Sets, (B, N, 13).
-
-    Returns:
-        A mask, (B, N) bool.
-    """
-    is_place, is_object = sets[..., IS_PLACE] > 0, sets[..., IS_OBJECT] > 0
-    return is_place.where(is_place_decision(sets)[:, None], is_object)
-
-
-def length_buckets(sets: Tensor) -> list[Tensor]:
-    """Part a batch so that little is padded: the place sets, and two halves of the pick sets.
-
-    Place sets are several times as long as pick sets, and these have from 4 to some 20 rows.
-
-    Args:
-        sets: Sets, (B, N, 13).
-
-    Returns:
-        The indices of each part that is not empty, (K,) int64 each.
-    """
-    is_place, length = is_place_decision(sets), is_real(sets).sum(dim=1)  # (B,) each
-    picks = (~is_place).nonzero()[:, 0]
-    picks = picks[length[picks].argsort(stable=True)]
-    parts = [*picks.tensor_split(2), is_place.nonzero()[:, 0]]
-    return [part for part in parts if len(part)]
 
 
 def chosen_rows(sets: Tensor, actions: Tensor) -> Tensor:
@@ -93,36 +52,55 @@ def accuracies(correct: Tensor, is_place: Tensor) -> dict[str, float]:
     }
 
 
-def keep(sets: Tensor, kept: Tensor) -> tuple[Tensor, Tensor]:
-    """Move the kept rows of each set to its front, in their order, and cut the rest off.
+def length_buckets(sets: Tensor) -> list[Tensor]:
+    """Group sets of similar length: the place sets, and two halves of the pick sets.
+
+    Place sets are several times as long as pick sets, and these have from 4 to some 20 rows, so
+    grouping them saves most of the padding.
+
+    Args:
+        sets: Sets, (B, N, 13).
+
+    Returns:
+        The indices of each group that is not empty, (K,) int64 each.
+    """
+    is_place, length = is_place_decision(sets), is_real(sets).sum(dim=1)  # (B,) each
+    picks = (~is_place).nonzero()[:, 0]
+    picks = picks[length[picks].argsort(stable=True)]
+    groups = [*picks.tensor_split(2), is_place.nonzero()[:, 0]]
+    return [group for group in groups if len(group)]
+
+
+def select_rows(sets: Tensor, selected: Tensor) -> tuple[Tensor, Tensor]:
+    """Move the selected rows of each set to its front, in their order, and cut the rest off.
 
     Args:
         sets: Sets, (B, N, D).
-        kept: The rows to keep, (B, N) bool.
+        selected: The rows to keep, (B, N) bool.
 
     Returns:
-        The kept rows, (B, M, D), M the largest number of them, and which are real, (B, M) bool.
+        The selected rows, (B, M, D), M the largest number of them, and which are real, (B, M) bool.
     """
-    index, mask = indices_of(kept)
-    return take(sets, index), mask
+    index, mask = selected_indices(selected)
+    return gather_rows(sets, index), mask
 
 
-def indices_of(kept: Tensor) -> tuple[Tensor, Tensor]:
-    """Where the kept rows of each set stand.
+def selected_indices(selected: Tensor) -> tuple[Tensor, Tensor]:
+    """Where the selected rows of each set are.
 
     Args:
-        kept: The rows to keep, (B, N) bool.
+        selected: The rows to keep, (B, N) bool.
 
     Returns:
-        Their indices in their order, then others, (B, M) int64, M the largest number of kept rows,
-        and which are those of kept rows, (B, M) bool.
+        Their indices in their order, then others, (B, M) int64, M the largest number of selected
+        rows, and which are those of selected rows, (B, M) bool.
     """
-    counts = kept.sum(dim=1)  # (B,)
+    counts = selected.sum(dim=1)  # (B,)
     longest = int(counts.max())
-    index = kept.logical_not().byte().argsort(dim=1, stable=True)[:, :longest]  # (B, M)
-    return index, torch.arange(longest, device=kept.device) < counts[:, None]
+    index = selected.logical_not().byte().argsort(dim=1, stable=True)[:, :longest]  # (B, M)
+    return index, torch.arange(longest, device=selected.device) < counts[:, None]
 
 
-def take(sets: Tensor, index: Tensor) -> Tensor:
+def gather_rows(sets: Tensor, index: Tensor) -> Tensor:
     """The rows of sets, (B, N, D), at the indices, (B, M), of each: (B, M, D)."""
     return sets.gather(1, index[..., None].expand(-1, -1, sets.shape[-1]))

@@ -1,4 +1,4 @@
-"""What LeRobot hands to a policy of instance sets: checked before it is used."""
+"""The features that LeRobot gives to policies of instance sets, checked before use."""
 
 from collections.abc import Callable
 
@@ -13,7 +13,7 @@ POSE_SIZE = 7  # position and quaternion
 
 
 def check_sets_and_poses(config: PreTrainedConfig) -> None:
-    """Check that there are sets of instances to look at and poses to return.
+    """Check that the inputs contain sets of instances and the outputs poses.
 
     Raises:
         ValueError: If a feature is missing or has another shape.
@@ -32,21 +32,28 @@ def _check(
     if feature is None or not fits(tuple(feature.shape)):
         found = "is missing" if feature is None else f"has the shape {tuple(feature.shape)}"
         raise ValueError(
-            f"{config.type!r} reads sets of rows of {COLUMNS} numbers and answers with a pose of "
+            f"{config.type!r} takes sets of rows of {COLUMNS} numbers and returns a pose of "
             f"{POSE_SIZE}, but {name!r} {found}; use a data set or an environment of kitchen_prefs."
         )
 
 
-def shown(batch: dict[str, Tensor], key: str) -> Tensor:
-    """What an environment shows under a key.
+def observed(batch: dict[str, Tensor], key: str) -> Tensor:
+    """An entry of an environment's observation.
+
+    Args:
+        batch: The observation.
+        key: The entry's key.
+
+    Returns:
+        The entry.
 
     Raises:
-        ValueError: If it does not show it.
+        ValueError: If the observation does not contain it.
     """
     if key not in batch:
         track = " on the track --track=privileged (--env.track)" * (key == OBS_PREFERENCE)
         raise ValueError(
-            f"The policy needs {key!r}, which the environment does not show; roll it out in an "
+            f"The policy needs {key!r}, which the observation does not contain; roll it out in an "
             f"environment of kitchen_prefs{track}."
         )
     return batch[key]

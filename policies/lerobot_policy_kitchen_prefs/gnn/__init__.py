@@ -1,4 +1,4 @@
-"""The paper's baseline: a graph network that is told the preference (paper, section 3.1).
+"""The paper's baseline: a graph network with the preference as an input (paper, section 3.1).
 
 LeRobot finds `modeling_gnn` by its name; importing it takes seconds because of torch-geometric.
 """

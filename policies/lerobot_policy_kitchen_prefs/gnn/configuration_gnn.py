@@ -1,4 +1,4 @@
-"""What can be chosen about the graph network. The defaults are the paper's."""
+"""The configuration of the graph network. The defaults are the paper's."""
 
 from dataclasses import dataclass, field
 
@@ -19,20 +19,20 @@ class GNNConfig(PreTrainedConfig):
         dim: Size of a node.
         n_layers: Layers of attention, each with a skip connection. The paper does not say how many;
             its transformer has two.
-        n_heads: Attention heads of each layer, which share `dim`; the same holds for them.
-        encoding: "linear" takes extents and poses as numbers (the paper); "fourier" adds waves of
-            them, so that millimetres count.
-        time: Whether nodes tell the decision's index, as the paper's do. Longer sessions run past
-            the indices that training saw.
+        n_heads: Attention heads of each layer, which share `dim`. The paper does not say how many;
+            its transformer has two.
+        encoding: "linear" takes extents and poses as numbers (the paper); "fourier" adds their
+            Fourier features, which resolve millimetres.
+        time: Whether the inputs contain the decision's index, as the paper's do. Longer sessions
+            exceed the indices of training.
         pre_norm: Whether a layer is added to its input and followed by a feed-forward network, with
             layer normalisation before each, instead of being followed by an ELU.
-        readout: "linear" scores each node by itself; "pointer" compares it with what all nodes say
-            together.
-        clashes: Whether learned shapes alone say which places the objects of a set block.
-        failures: Whether the network sees which rows it has just chosen in vain.
-        recognise: Whether dishes that are seen noisily are taken for the known ones that they
-            resemble.
-        sample: Whether acting draws a row by its probability, as PPO does when it learns, instead
+        readout: "linear" scores each node by itself; "pointer" compares it with the summary of all
+            nodes.
+        clashes: Whether a collision model of learned shapes predicts which places are blocked.
+        failures: Whether the network sees which choices have just failed.
+        recognise: Whether observations are denoised by snapping to known extents and poses.
+        sample: Whether acting samples a row by its probability, as PPO does in training, instead
             of taking the most probable one.
     """
 
@@ -77,7 +77,7 @@ class GNNConfig(PreTrainedConfig):
 
     @property
     def track(self) -> str:
-        """What the environment has to tell the policy; `kitchen-prefs evaluate` reads it."""
+        """The track whose observations the policy needs; `kitchen-prefs evaluate` reads it."""
         return "privileged"
 
     def get_optimizer_preset(self) -> AdamConfig:
@@ -89,10 +89,10 @@ class GNNConfig(PreTrainedConfig):
         return None
 
     def validate_features(self) -> None:
-        """Check that there are sets of instances to look at and poses to return.
+        """Check that the inputs contain sets of instances and the outputs poses.
 
-        The preference's label becomes an input, too: environments of the privileged track show it,
-        data sets have it in a column that LeRobot does not take for an observation.
+        The preference's label becomes an input, too: observations of the privileged track contain
+        it, data sets have it in a column that LeRobot does not take for an observation.
 
         Raises:
             ValueError: If a feature is missing or has another shape.

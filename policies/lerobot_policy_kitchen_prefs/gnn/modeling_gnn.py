@@ -1,6 +1,6 @@
-"""The graph network as a LeRobot policy: imitation in training, one row of each set when acting.
+"""The graph network as a LeRobot policy: imitation in training, one row of each set at rollout.
 
-It is told the preference's true label: the privileged track.
+Its input contains the preference's true label: the privileged track.
 """
 
 from typing import Any
@@ -14,15 +14,15 @@ from lerobot.utils.constants import ACTION
 from torch import Tensor, nn
 
 from kitchen_prefs.envs.lerobot_env import OBS_INSTANCES, OBS_PREFERENCE
-from kitchen_prefs.instances import POSE
+from kitchen_prefs.instances import POSE, is_place_decision
 from kitchen_prefs.preferences import TWELVE
 
 from ..common.categories import Categories
 from ..common.demonstration_store import DemonstrationStore
 from ..common.denoising import Denoiser
 from ..common.failed_choices import FailedChoices, synthesise_failures
-from ..common.instance_sets import accuracies, chosen_rows, is_place_decision
-from ..common.lerobot_features import shown
+from ..common.instance_sets import accuracies, chosen_rows
+from ..common.lerobot_features import observed
 from .configuration_gnn import GNNConfig
 from .network import GNNetwork, RowScores
 
@@ -40,26 +40,26 @@ class GNNPolicy(PreTrainedPolicy):
 
         Args:
             config: The configuration.
-            dataset_meta: The metadata of the data set that is trained on. Without it the policy
-                acts but does not learn by imitation.
-            **_: What else LeRobot offers to policies.
+            dataset_meta: The metadata of the training data set. Without it the policy can act but
+                not learn by imitation.
+            **_: Other arguments of LeRobot's.
 
         Raises:
             ValueError: If the features or the data set's columns are not those of kitchen_prefs, or
-                if the data set shows a preference that is none of the twelve.
+                if the data set has a preference that is none of the twelve.
         """
         super().__init__(config)
         config.validate_features()
         self.config: GNNConfig = config
         self.network = GNNetwork(config)
-        self.recognition = Denoiser() if config.recognise else None
+        self.recognition = Denoiser() if config.recognise else None  # named so in checkpoints
         self.labels: Tensor | None = None  # (E,), of each episode of the data set
         if dataset_meta is not None:
             demonstrations = DemonstrationStore.read(dataset_meta, chosen_only=True)
             self.labels = _labels_of(demonstrations, dataset_meta.repo_id)
-            self.categories = Categories.of(demonstrations)
+            self.categories = Categories.from_demonstrations(demonstrations)
             if self.recognition:
-                self.recognition.remember(demonstrations)
+                self.recognition.fit(demonstrations)
         self.reset()
 
     def get_optim_params(self) -> list[nn.Parameter]:
@@ -83,8 +83,8 @@ class GNNPolicy(PreTrainedPolicy):
         """
         if self.labels is None:
             raise ValueError(
-                "The graph network takes the preferences' labels from the data set that it trains "
-                "on; make it with dataset_meta=dataset.meta, as lerobot-train does."
+                "The graph network takes the preferences' labels from the training data set; make "
+                "it with dataset_meta=dataset.meta, as lerobot-train does."
             )
         sets = batch[OBS_INSTANCES]  # (B, N, 13)
         targets = chosen_rows(sets, batch[ACTION])  # (B,)
@@ -101,7 +101,7 @@ class GNNPolicy(PreTrainedPolicy):
     # Acting ----------------------------------------------------------------------------------
 
     def reset(self) -> None:
-        """Forget the past: other episodes begin."""
+        """Forget failed choices: new episodes begin."""
         self._failed_choices = FailedChoices()
 
     @torch.no_grad()
@@ -110,7 +110,7 @@ class GNNPolicy(PreTrainedPolicy):
 
         Args:
             batch: The observations of B environments of the privileged track.
-            **_: What else LeRobot offers to policies.
+            **_: Other arguments of LeRobot's.
 
         Returns:
             The poses of the chosen rows, (B, 7).
@@ -119,18 +119,18 @@ class GNNPolicy(PreTrainedPolicy):
             ValueError: If the sets or the labels are missing.
         """
         self.eval()
-        observed, sets = shown(batch, OBS_INSTANCES), self._recognise(batch)  # (B, N, 13) each
+        raw_sets, sets = observed(batch, OBS_INSTANCES), self._denoised(batch)  # (B, N, 13) each
         scores = self.score_rows(batch, self._failed_choices.find(sets)).scores  # (B, N)
-        choices = draw(scores) if self.config.sample else scores.argmax(dim=1)  # (B,)
+        choices = sample(scores) if self.config.sample else scores.argmax(dim=1)  # (B,)
         environments = torch.arange(len(sets), device=sets.device)
-        self._failed_choices.remember(sets[environments, choices])
-        return observed[environments, choices][:, POSE]
+        self._failed_choices.record(sets[environments, choices])
+        return raw_sets[environments, choices][:, POSE]
 
     def predict_action_chunk(self, batch: dict[str, Tensor], **_: Any) -> Tensor:
         """The action as a chunk of one, (B, 1, 7)."""
         return self.select_action(batch)[:, None]
 
-    # Both, and learning from rewards ------------------------------------------------------------
+    # Acting and reinforcement learning ---------------------------------------------------------
 
     @property
     def summary_size(self) -> int:
@@ -138,29 +138,29 @@ class GNNPolicy(PreTrainedPolicy):
         return self.config.dim
 
     def score_rows(self, batch: dict[str, Tensor], failed: Tensor) -> RowScores:
-        """Judge the rows of what environments show.
+        """Score the rows of observations.
 
         Args:
-            batch: What `select_action` takes.
-            failed: Which rows were just chosen in vain, (B, N) bool.
+            batch: The batch of `select_action`.
+            failed: Which rows have just failed, (B, N) bool.
 
         Returns:
             The rows' scores and the sets' summaries.
 
         Raises:
-            ValueError: What `select_action` raises.
+            ValueError: As `select_action` does.
         """
-        labels = shown(batch, OBS_PREFERENCE).flatten().round().long()  # (B,)
-        return self.network(self._recognise(batch), failed, labels)
+        labels = observed(batch, OBS_PREFERENCE).flatten().round().long()  # (B,)
+        return self.network(self._denoised(batch), failed, labels)
 
-    def _recognise(self, batch: dict[str, Tensor]) -> Tensor:
-        """What is seen, taken for what is known, (B, N, 13)."""
-        observed = shown(batch, OBS_INSTANCES)
-        return self.recognition(observed) if self.recognition else observed
+    def _denoised(self, batch: dict[str, Tensor]) -> Tensor:
+        """The observed sets, denoised where configured, (B, N, 13)."""
+        sets = observed(batch, OBS_INSTANCES)
+        return self.recognition(sets) if self.recognition else sets
 
 
-def draw(scores: Tensor) -> Tensor:
-    """Draw a row of each set by its probability, (B, N) -> (B,) int64."""
+def sample(scores: Tensor) -> Tensor:
+    """Sample a row of each set by its probability, (B, N) -> (B,) int64."""
     return scores.softmax(dim=1).multinomial(1)[:, 0]
 
 
@@ -169,7 +169,7 @@ def _labels_of(demonstrations: DemonstrationStore, name: str) -> Tensor:
     labels = torch.from_numpy(demonstrations.preference)
     if (labels >= len(TWELVE)).any():
         raise ValueError(
-            f"The data set {name!r} shows preferences that are none of the {len(TWELVE)} which the "
+            f"The data set {name!r} has preferences that are none of the {len(TWELVE)} which the "
             "graph network has inputs for; train on dishwasher-train-v1 or dishwasher-train-all-v1."
         )
     return labels

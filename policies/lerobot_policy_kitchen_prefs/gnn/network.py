@@ -1,4 +1,8 @@
-"""The graph network: instances that know the preference look at each other, then are scored."""
+"""The graph network: instances with the preference as an input attend to each other and get scores.
+
+The defaults are the paper's (appendix "Baseline: GNN"). What departs from them has a switch in
+`GNNConfig`.
+"""
 
 from typing import NamedTuple
 
@@ -9,11 +13,20 @@ from torch_geometric.nn import DenseGATConv
 from torch_geometric.nn.aggr import AttentionalAggregation, MeanAggregation
 
 from kitchen_prefs.envs.environment import MAX_EPISODE_STEPS
-from kitchen_prefs.instances import DECISION, EXTENTS, IS_OBJECT, POSE, POSITION, QUATERNION
+from kitchen_prefs.instances import (
+    DECISION,
+    EXTENTS,
+    IS_OBJECT,
+    POSE,
+    POSITION,
+    QUATERNION,
+    choosable,
+    is_real,
+)
 from kitchen_prefs.preferences import TWELVE
 
 from ..common.collision_model import CollisionModel, attended_rows
-from ..common.failed_choices import FailedRows, lowered
+from ..common.failed_choices import FailureEmbedding
 from ..common.fourier_features import (
     EXTENTS_RANGE,
     FREQUENCIES,
@@ -21,20 +34,20 @@ from ..common.fourier_features import (
     QUATERNION_RANGE,
     FourierFeatures,
 )
-from ..common.instance_sets import choosable, is_real, length_buckets
+from ..common.instance_sets import length_buckets
+from ..common.score_correction import correct_scores
 from .configuration_gnn import GNNConfig
 
-NUMBERS = [*range(EXTENTS.start, POSE.stop), IS_OBJECT]  # with the time the paper's 12 attributes
-WAVES = (POSE.stop - EXTENTS.start) * 2 * FREQUENCIES  # of extents, position and quaternion
-NEVER = -1e8  # the score of a row that may not be chosen: its probability is 0, its gradient finite
+ATTRIBUTES = [*range(EXTENTS.start, POSE.stop), IS_OBJECT]  # with the time, the paper's 12
+EXCLUDED = -1e8  # the score of a row that may not be chosen: probability 0, but a finite gradient
 
 
 class RowScores(NamedTuple):
-    """What the network makes of B sets.
+    """The network's outputs for B sets.
 
     Attributes:
-        scores: A score for every row, (B, N); NEVER for what the decision may not choose.
-        summary: All nodes of a set together, (B, d).
+        scores: A score for every row, (B, N); EXCLUDED for rows that the decision may not choose.
+        summary: The nodes of each set, aggregated, (B, d).
     """
 
     scores: Tensor
@@ -42,7 +55,20 @@ class RowScores(NamedTuple):
 
 
 class GNNetwork(nn.Module):
-    """Graph attention over the fully connected graph of the visible instances."""
+    """Graph attention over the fully connected graph of the visible instances.
+
+        scores (B, N)
+          ▲
+        correction by collisions and failed choices, where configured
+          ▲
+        readout of each node, where configured with the summary of all nodes (B, d)
+          ▲
+        layers of graph attention (B, N, d)
+          ▲
+        attributes of the instance || one-hot of the preference, projected (B, N, d)
+
+    `clashes` and `failures` are the names of weights in checkpoints.
+    """
 
     def __init__(self, config: GNNConfig) -> None:
         """Make the network of a configuration."""
@@ -52,58 +78,57 @@ class GNNetwork(nn.Module):
         layer = ResidualLayer if config.pre_norm else PlainLayer
         self.layers = nn.ModuleList(layer(config) for _ in range(config.n_layers))
         self.norm = nn.LayerNorm(config.dim) if config.pre_norm else nn.Identity()
-        points = config.readout == "pointer"
+        has_pointer = config.readout == "pointer"
         self.summarise = (
-            AttentionalAggregation(nn.Linear(config.dim, 1)) if points else MeanAggregation()
+            AttentionalAggregation(nn.Linear(config.dim, 1)) if has_pointer else MeanAggregation()
         )
-        self.readout = Pointer(config.dim) if points else LinearReadout(config.dim)
-        self.failures = FailedRows(config.dim) if config.failures else None
+        self.readout = Pointer(config.dim) if has_pointer else LinearReadout(config.dim)
+        self.failures = FailureEmbedding(config.dim) if config.failures else None
         self.clashes = CollisionModel() if config.clashes else None
 
     def forward(self, sets: Tensor, failed: Tensor, labels: Tensor) -> RowScores:
-        """Judge the rows of sets.
+        """Score the rows of sets.
 
         Args:
             sets: Sets, zero-padded, (B, N, 13).
-            failed: Which rows were just chosen in vain, (B, N) bool.
+            failed: Which rows have just failed, (B, N) bool.
             labels: The preferences' labels, (B,) int64.
 
         Returns:
             The rows' scores and the sets' summaries.
         """
-        scores = sets.new_full(sets.shape[:2], NEVER)
+        scores = sets.new_full(sets.shape[:2], EXCLUDED)
         summary = sets.new_zeros(len(sets), self.dim)
-        for part in length_buckets(sets):
-            n = int(is_real(sets[part]).any(dim=0).nonzero().max()) + 1  # the rest is padding
-            row_scores = self._score_rows(sets[part, :n], failed[part, :n], labels[part])
-            scores[part, :n], summary[part] = row_scores
+        for bucket in length_buckets(sets):
+            n = int(is_real(sets[bucket]).any(dim=0).nonzero().max()) + 1  # the rest is padding
+            row_scores = self._score_rows(sets[bucket, :n], failed[bucket, :n], labels[bucket])
+            scores[bucket, :n], summary[bucket] = row_scores
         return RowScores(scores, summary)
 
     def _score_rows(self, sets: Tensor, failed: Tensor, labels: Tensor) -> RowScores:
         is_node = attended_rows(sets) if self.clashes else is_real(sets)  # (B, N)
         nodes = self.inputs(sets, one_hot(labels))  # (B, N, d)
         if self.failures:
-            nodes = self.failures.mark(nodes, failed)
+            nodes = self.failures.embed(nodes, failed)
         for layer in self.layers:
-            nodes = layer(nodes, is_node)
+            nodes = layer(nodes, is_node)  # (B, N, d)
         nodes = self.norm(nodes)
         of_set = is_node.nonzero()[:, 0]  # (V,)
         summary = self.summarise(nodes[is_node], of_set, dim_size=len(sets))  # (B, d)
-        scores = self.readout(nodes, summary)  # (B, N)
-        if self.clashes:
-            free = self.clashes(sets)  # (B, N), log-probabilities
-            # Added, they teach shapes even where what is surely blocked lies at the bottom.
-            scores = free + lowered(scores, 1 - free.exp(), sets)
-        if self.failures:
-            scores = lowered(scores, self.failures.shares(nodes, failed), sets)
-        return RowScores(scores.masked_fill(~choosable(sets), NEVER), summary)
+        scores = correct_scores(
+            self.readout(nodes, summary),  # (B, N)
+            sets,
+            self.clashes(sets) if self.clashes else None,
+            self.failures.penalties(nodes, failed) if self.failures else None,
+        )
+        return RowScores(scores.masked_fill(~choosable(sets), EXCLUDED), summary)
 
 
 def one_hot(labels: Tensor) -> Tensor:
     """The twelve-way one-hot of preferences (paper, appendix "Baseline: GNN").
 
-    Twelve inputs can name no other preference: whoever is none of the twelve has zeros, and the
-    network knows nothing of this person.
+    Twelve inputs can name no other preference: every other preference has zeros, and the network
+    knows nothing of it.
 
     Args:
         labels: The preferences' labels, (B,) int64.
@@ -115,30 +140,34 @@ def one_hot(labels: Tensor) -> Tensor:
 
 
 class NodeInputs(nn.Module):
-    """What a node begins as: its instance's attributes and the preference, projected."""
+    """The nodes' features: the attributes of instances and the preference, projected."""
 
     def __init__(self, config: GNNConfig) -> None:
-        """Make the projection of the paper's 24 inputs, or of waves beside them."""
+        """Make the projection of the paper's 24 inputs, or of Fourier features beside them."""
         super().__init__()
         self.time = config.time
-        self.waves = Waves() if config.encoding == "fourier" else None
-        size = 1 + len(NUMBERS) + len(TWELVE) + (WAVES if self.waves else 0)
-        self.project = nn.Linear(size, config.dim)
+        self.fourier = AttributeFourierFeatures() if config.encoding == "fourier" else None
+        added = self.fourier.size if self.fourier else 0
+        self.project = nn.Linear(1 + len(ATTRIBUTES) + len(TWELVE) + added, config.dim)
 
-    def forward(self, sets: Tensor, told: Tensor) -> Tensor:
+    def forward(self, sets: Tensor, preference: Tensor) -> Tensor:
         """Embed the rows of sets, (B, N, 13), and their preferences, (B, 12), as (B, N, d)."""
-        # The paper names no unit of time; whole decisions would outweigh everything beside them.
+        # The paper names no unit of time; whole decisions would outweigh all other inputs.
         time = sets[..., DECISION, None] / MAX_EPISODE_STEPS * self.time  # (B, N, 1)
-        told = told[:, None].expand(-1, sets.shape[1], -1)  # (B, N, 12)
-        inputs = [time, sets[..., NUMBERS], told, *([self.waves(sets)] if self.waves else [])]
+        preference = preference[:, None].expand(-1, sets.shape[1], -1)  # (B, N, 12)
+        inputs = [time, sets[..., ATTRIBUTES], preference]
+        if self.fourier:
+            inputs.append(self.fourier(sets))  # (B, N, 160)
         return self.project(torch.cat(inputs, dim=-1))
 
 
-class Waves(nn.Module):
+class AttributeFourierFeatures(nn.Module):
     """Fourier features of extents, position and quaternion."""
 
+    size = (POSE.stop - EXTENTS.start) * 2 * FREQUENCIES
+
     def __init__(self) -> None:
-        """Make waves as long as the range of each."""
+        """Make Fourier features with the range of each as the longest wavelength."""
         super().__init__()
         self.extents = FourierFeatures(EXTENTS_RANGE)
         self.position = FourierFeatures(POSITION_RANGE)
@@ -146,12 +175,12 @@ class Waves(nn.Module):
 
     def forward(self, rows: Tensor) -> Tensor:
         """Expand rows, (..., 13), to (..., 10 * 2 * FREQUENCIES)."""
-        waves = (
+        features = (
             self.extents(rows[..., EXTENTS]),
             self.position(rows[..., POSITION]),
             self.quaternion(rows[..., QUATERNION]),
         )
-        return torch.cat(waves, dim=-1)
+        return torch.cat(features, dim=-1)
 
 
 class GraphAttention(nn.Module):
@@ -164,24 +193,24 @@ class GraphAttention(nn.Module):
         self.layer = DenseGATConv(config.dim, size, heads=config.n_heads)
 
     def forward(self, nodes: Tensor, is_node: Tensor) -> Tensor:
-        """Let all rows of sets look at the nodes, themselves among them.
+        """Attend from all rows of a set to its nodes, themselves included.
 
         Args:
             nodes: The rows, (B, N, d).
             is_node: Which of them are nodes, (B, N) bool, at least one of each set.
 
         Returns:
-            What they see, (B, N, d).
+            The attended values, (B, N, d).
         """
-        everyone = is_node[:, None].expand(-1, nodes.shape[1], -1)  # (B, N, N)
-        return self.layer(nodes, everyone, add_loop=False)
+        adjacency = is_node[:, None].expand(-1, nodes.shape[1], -1)  # (B, N, N)
+        return self.layer(nodes, adjacency, add_loop=False)
 
 
 class PlainLayer(nn.Module):
     """Attention beside a skip connection, and an ELU (Velickovic et al., 2018).
 
     In a fully connected graph all nodes have the same neighbours. Without the skip connection they
-    would be almost equal after one layer, and no score could tell them apart.
+    would be almost equal after one layer, and so would their scores.
     """
 
     def __init__(self, config: GNNConfig) -> None:
@@ -226,7 +255,7 @@ class LinearReadout(nn.Module):
 
         Args:
             outputs: The nodes in their sets, (B, N, d).
-            summary: All nodes of a set together, (B, d); not used here.
+            summary: The nodes of each set, aggregated, (B, d); not used here.
 
         Returns:
             The scores, (B, N).
@@ -235,7 +264,7 @@ class LinearReadout(nn.Module):
 
 
 class Pointer(nn.Module):
-    """The dot product of the nodes with what they say together, as TTP points."""
+    """The dot product of each node with the summary of its set, as in TTP."""
 
     def __init__(self, dim: int) -> None:
         """Make the projections of `dim` dimensions."""

@@ -1,4 +1,4 @@
-"""The pipelines around the graph network: batch and device; the numbers stay as they are."""
+"""The processors of the graph network: LeRobot's default steps, with nothing normalised."""
 
 from typing import Any
 
@@ -18,7 +18,7 @@ def make_gnn_pre_post_processors(
     PolicyProcessorPipeline[dict[str, Any], dict[str, Any]],
     PolicyProcessorPipeline[PolicyAction, PolicyAction],
 ]:
-    """Make LeRobot's default pipelines, whose normalizers do nothing here.
+    """Make LeRobot's default pipelines, whose normalisers do nothing here.
 
     Args:
         config: The policy's configuration; its normalization mapping is IDENTITY throughout.

@@ -23,9 +23,9 @@ class RulesConfig(PreTrainedConfig):
     """Which rule decides.
 
     Attributes:
-        rule: "random" chooses any row; "majority" acts by the commonest training preference;
-            "nearest" by the training preference that explains the prompt best; "symbolic" by the
-            preference that it reads out of the prompt; "expert" by the label (privileged track).
+        rule: "random" chooses any row; "majority" follows the most frequent training preference;
+            "nearest" the training preference that explains the prompt best; "symbolic" the
+            preference that it infers from the prompt; "expert" the label (privileged track).
 
     Raises:
         ValueError: If the rule is unknown.
@@ -47,7 +47,7 @@ class RulesConfig(PreTrainedConfig):
             raise ValueError(f"There is no rule {self.rule!r}. {suggest(self.rule, NEEDS)}")
 
     def validate_features(self) -> None:
-        """Check that the environment shows what the rule reads.
+        """Check that the observation contains what the rule reads.
 
         Raises:
             ValueError: If a key is missing.
@@ -55,11 +55,14 @@ class RulesConfig(PreTrainedConfig):
         for key in NEEDS[self.rule]:
             if key not in (self.input_features or {}):
                 hint = " Give --track or --env.track=privileged." if key == OBS_PREFERENCE else ""
-                raise ValueError(f"The rule {self.rule!r} needs {key!r}, which is not there.{hint}")
+                raise ValueError(
+                    f"The rule {self.rule!r} needs {key!r}, which the observation does not "
+                    f"contain.{hint}"
+                )
 
     @property
     def track(self) -> str:
-        """What the environment has to tell the policy; `kitchen-prefs evaluate` reads it."""
+        """The track whose observations the policy needs; `kitchen-prefs evaluate` reads it."""
         return "privileged" if self.rule == "expert" else "standard"
 
     @property

@@ -15,7 +15,7 @@ from kitchen_prefs.preferences import SEEN, Preference
 from kitchen_prefs.simulation.expert import choose
 from kitchen_prefs.simulation.sessions import preference_with
 from lerobot_policy_kitchen_prefs.rules.configuration_rules import RulesConfig
-from lerobot_policy_kitchen_prefs.rules.observed_view import Memory, Sight
+from lerobot_policy_kitchen_prefs.rules.observed_view import Memory, ObservedView
 from lerobot_policy_kitchen_prefs.rules.preference_inference import (
     nearest_training_preference,
     symbolic_preference,
@@ -45,7 +45,7 @@ class RulesPolicy(PreTrainedPolicy):
 
         Args:
             batch: The observation; `observation.instances` is (B, N, 13).
-            **_: What else LeRobot offers to policies.
+            **_: Other arguments of LeRobot's.
 
         Returns:
             The chosen rows' poses, (B, 7).
@@ -60,18 +60,18 @@ class RulesPolicy(PreTrainedPolicy):
         return torch.from_numpy(np.stack(poses))
 
     def _begin(self, batch: dict[str, Tensor], size: int) -> None:
-        """At an episode's first decision, find out whose dishwasher each one is."""
+        """At an episode's first decision, find the preference of each environment's user."""
         if not self._preferences:
             self._preferences = PREFERENCES[self.config.rule](batch, size)
             self._memories = [Memory() for _ in range(size)]
 
     def _row(self, i: int, rows: np.ndarray) -> int:
-        # The symbolic rule acts on what is visible, so it alone forgets what a closed rack holds.
+        # Only the symbolic rule ignores closed racks: it acts on what is visible.
         memory = None if self.config.rule == "symbolic" else self._memories[i]
-        return choose(Sight(rows, memory), self._preferences[i])
+        return choose(ObservedView(rows, memory), self._preferences[i])
 
     def predict_action_chunk(self, batch: dict[str, Tensor], **_: Any) -> Tensor:
-        """The one action that is decided, as a chunk, (B, 1, 7)."""
+        """The action as a chunk of one, (B, 1, 7)."""
         return self.select_action(batch)[:, None]
 
     def get_optim_params(self) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""Reads a preference out of a prompt, by rule and without learning."""
+"""Infers a preference from a prompt, by rule and without learning."""
 
 from collections import Counter, defaultdict
 from collections.abc import Iterator
@@ -8,11 +8,11 @@ import numpy as np
 from kitchen_prefs import instances
 from kitchen_prefs.preferences import CATEGORIES, SEEN, TOP_CATEGORIES, Preference
 from kitchen_prefs.simulation.expert import choose
-from lerobot_policy_kitchen_prefs.rules.observed_view import Memory, Sight
+from lerobot_policy_kitchen_prefs.rules.observed_view import Memory, ObservedView
 
 
 def decisions_of(prompt: np.ndarray) -> Iterator[tuple[np.ndarray, int]]:
-    """Take a prompt apart.
+    """Split a prompt into decisions.
 
     Args:
         prompt: (P, 14), padded.
@@ -27,11 +27,11 @@ def decisions_of(prompt: np.ndarray) -> Iterator[tuple[np.ndarray, int]]:
 
 
 def symbolic_preference(prompt: np.ndarray) -> Preference:
-    """The preference that a demonstration shows.
+    """The preference of a demonstration.
 
     The first rack is the one that is opened first; a category's rack is where most of its dishes
     go; of two categories of a rack the earlier is the one that is picked while the other waits.
-    What the prompt leaves open is filled up in the order of CATEGORIES.
+    What the prompt does not determine follows the order of CATEGORIES.
 
     Args:
         prompt: (P, 14), padded.
@@ -41,23 +41,23 @@ def symbolic_preference(prompt: np.ndarray) -> Preference:
     """
     first: str | None = None
     racks: dict[str, Counter[str]] = defaultdict(Counter)
-    picks: list[tuple[str, set[str]]] = []  # what was picked, and what waited meanwhile
+    picks: list[tuple[str, set[str]]] = []  # the category picked, and those that waited
     for rows, chosen in decisions_of(prompt):
-        sight = Sight(rows)
-        if first is None and chosen in sight.racks.values():
-            first = next(rack for rack, row in sight.racks.items() if row == chosen)
-        if sight.held is not None and sight.out is not None and chosen != sight.sink:
-            racks[sight.held][sight.out] += 1
-        if sight.held is None and sight.out is not None:
-            waiting = sight.waiting()
+        view = ObservedView(rows)
+        if first is None and chosen in view.racks.values():
+            first = next(rack for rack, row in view.racks.items() if row == chosen)
+        if view.held is not None and view.out is not None and chosen != view.sink:
+            racks[view.held][view.out] += 1
+        if view.held is None and view.out is not None:
+            waiting = view.waiting()
             if chosen in [option.choice for option in waiting]:
-                picks.append((sight.category(chosen), {option.category for option in waiting}))
+                picks.append((view.category(chosen), {option.category for option in waiting}))
     top, bottom = _partition({c: racks[c].most_common(1)[0][0] for c in CATEGORIES if racks[c]})
     return Preference(first or "top", _ordered(top, picks), _ordered(bottom, picks))
 
 
 def _partition(rack_of: dict[str, str]) -> tuple[list[str], list[str]]:
-    """Three categories for the top, four for the bottom; the unknown go where there is room."""
+    """Three categories for the top, four for the bottom; the unknown fill the remaining slots."""
     top = [category for category in CATEGORIES if rack_of.get(category) == "top"]
     unknown = [category for category in CATEGORIES if category not in rack_of]
     bottom = [category for category in CATEGORIES if rack_of.get(category) == "bottom"]
@@ -96,4 +96,6 @@ def nearest_training_preference(prompt: np.ndarray) -> Preference:
 
 def _agreement(decisions: list[tuple[np.ndarray, int]], preference: Preference) -> int:
     memory = Memory()
-    return sum(choose(Sight(rows, memory), preference) == chosen for rows, chosen in decisions)
+    return sum(
+        choose(ObservedView(rows, memory), preference) == chosen for rows, chosen in decisions
+    )

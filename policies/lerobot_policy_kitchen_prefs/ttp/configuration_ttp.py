@@ -1,6 +1,7 @@
-"""What can be chosen about TTP. The defaults are the paper's."""
+"""The configuration of TTP: the paper's by default, and a compact one."""
 
 from dataclasses import dataclass, field
+from typing import Any, Self
 
 from lerobot.configs import NormalizationMode, PreTrainedConfig
 from lerobot.optim import SGDConfig
@@ -12,6 +13,7 @@ from .scheduler import ExponentialDecaySchedulerConfig
 
 # The columns of each attribute.
 ATTRIBUTES = {"pose": POSE, "category": EXTENTS, "time": slice(DECISION, DECISION + 1)}
+MAX_DECISIONS = 256  # more than the longest episode has, `environment.MAX_EPISODE_STEPS`
 
 
 @PreTrainedConfig.register_subclass("ttp")
@@ -19,13 +21,14 @@ ATTRIBUTES = {"pose": POSE, "category": EXTENTS, "time": slice(DECISION, DECISIO
 class TTPConfig(PreTrainedConfig):
     """Configuration of the Transformer Task Planner (paper, section 2 and appendix "Training").
 
+    `TTPConfig.paper()` and `TTPConfig.compact()` are the two that the recipes train.
+
     Attributes:
         prompt_tokens: "states" makes the prompt's tokens from all rows of all decisions, with an
-            ACT token after each (the paper); "chosen" from the chosen row of each decision alone,
-            some forty tokens instead of a thousand; "final" from the dishes in the racks as they
-            stand in the end, without order and time.
-        relabel: Whether training permutes the categories, in prompt and situation together, and
-            lets dishes stand in the racks as their new category does.
+            ACT token after each (the paper); "chosen" from the chosen row of each decision, some
+            forty tokens instead of a thousand; "final" from the dishes in the racks in the end,
+            without order and time.
+        relabel: Whether training permutes the categories, in prompt and situation together.
         rounds: With how many prompts each pick decision of a batch is paired.
         dim_pose: Size of the pose embedding.
         dim_extents: Size of the category embedding.
@@ -37,25 +40,27 @@ class TTPConfig(PreTrainedConfig):
         n_decoder_layers: Layers of the situation decoder.
         use_slots: Whether slot attention reduces the encoded prompt to `num_slots` tokens.
         num_slots: Length H of the preference embedding.
-        slot_iterations: Rounds of slot attention.
-        context_history: The number k of earlier decisions whose objects are seen beside those of
-            the present one (paper, appendix).
+        slot_iterations: Iterations of slot attention.
+        context_history: The number of earlier decisions whose objects the network sees beside those
+            of the present one (paper, appendix).
         hidden: Attributes of instances that the network does not see, of "pose", "category" and
             "time" (paper, table "Attribute Ablations").
-        pose_encoding: "fourier" expands a pose into waves (the paper); "linear" takes its numbers.
-        extents_encoding: "fourier" expands the extents into waves (the paper); "linear" takes their
-            numbers; "label" only which category they are nearest to.
-        time_encoding: "table" looks the decision's index up (the paper); "fourier" expands it, so
-            that an index that training never saw has an embedding too.
-        situation_time: Whether the situation's rows tell the decision's index, as the paper's do.
+        pose_encoding: "fourier" encodes a pose by Fourier features (the paper), "linear" by its
+            numbers.
+        extents_encoding: "fourier" encodes the extents by Fourier features (the paper), "linear" by
+            their numbers, "label" by the nearest category.
+        time_encoding: "table" looks the decision's index up (the paper); "fourier" encodes it by
+            Fourier features, so that an index that training never saw has an embedding too.
+        situation_time: Whether the situation's rows contain the decision's index, as the paper's
+            do.
         pre_norm: Whether layers normalise before each sub-layer instead of after it.
         pointer: "inputs" compares the ACT token's output with the embeddings of the rows (the
             paper); "outputs" with learned projections of the decoder's outputs at the rows.
-        geometric_attention: Whether attention also sees how alike and how near instances are.
-        clashes: Whether learned shapes alone say which places the objects of a set block.
-        failures: Whether the network sees which rows it has just chosen in vain.
-        recognise: Whether dishes that are seen noisily are taken for the known ones that they
-            resemble most.
+        geometric_attention: Whether attention depends on how near two instances are in size and
+            position.
+        clashes: Whether a collision model of learned shapes predicts which places are blocked.
+        failures: Whether the network sees which choices have just failed.
+        recognise: Whether observations are denoised by snapping to known extents and poses.
         dtype: "float32", or "bfloat16" for LeRobot's mixed precision in training.
     """
 
@@ -121,23 +126,59 @@ class TTPConfig(PreTrainedConfig):
                 raise ValueError(f"{name} is {getattr(self, name)!r}; it must be one of {choices}.")
         unknown = sorted(set(self.hidden) - set(ATTRIBUTES))
         if unknown:
-            raise ValueError(f"hidden names {unknown[0]!r}; attributes are {tuple(ATTRIBUTES)}.")
+            raise ValueError(f"hidden names {unknown[0]!r}; it may name {tuple(ATTRIBUTES)}.")
         if self.dtype == "bfloat16" and (self.clashes or self.geometric_attention):
             raise ValueError(
                 "clashes and geometric_attention compare millimetres, which bfloat16 rounds away; "
-                "leave dtype at float32."
+                "set dtype to float32."
             )
         if self.context_history < 0:
             raise ValueError("context_history counts decisions; it is at least 0.")
         if self.context_history and (self.relabel or not self.situation_time):
             raise ValueError(
-                "With a context_history, relabel must be off, as it changes the present alone, and "
-                "situation_time on, as it tells the past from the present."
+                "With a context_history, relabel must be off, as it does not change the history, "
+                "and situation_time on, as it distinguishes the history from the present."
             )
         if self.dim % self.n_heads:
             raise ValueError(f"{self.n_heads} heads cannot share {self.dim} dimensions equally.")
         if self.rounds < 1:
             raise ValueError("rounds counts the prompts of a pick decision; it is at least 1.")
+
+    @classmethod
+    def paper(cls, **changes: Any) -> Self:
+        """The paper's network and training, which are the defaults (recipe `ttp_paper`).
+
+        Args:
+            **changes: Fields that differ.
+
+        Returns:
+            The configuration.
+        """
+        return cls(**changes)
+
+    @classmethod
+    def compact(cls, **changes: Any) -> Self:
+        """A network of half the size that reads short prompts (recipe `ttp_quick`, with reasons).
+
+        Args:
+            **changes: Fields that differ.
+
+        Returns:
+            The configuration.
+        """
+        return cls(**COMPACT | changes)
+
+    @property
+    def departs_from_paper(self) -> bool:
+        """Whether the network needs what `compact_network` adds to the paper's."""
+        return (
+            not self.situation_time
+            or self.pre_norm
+            or self.pointer != "inputs"
+            or self.geometric_attention
+            or self.clashes
+            or self.failures
+        )
 
     @property
     def dim(self) -> int:
@@ -158,7 +199,7 @@ class TTPConfig(PreTrainedConfig):
         return ExponentialDecaySchedulerConfig()
 
     def validate_features(self) -> None:
-        """Check that there are sets of instances to look at and poses to return.
+        """Check that the inputs contain sets of instances and the outputs poses.
 
         Raises:
             ValueError: If a feature is missing or has another shape.
@@ -167,15 +208,37 @@ class TTPConfig(PreTrainedConfig):
 
     @property
     def observation_delta_indices(self) -> list[int] | None:
-        """TTP looks at one decision, or at `context_history` more."""
+        """The present decision, and `context_history` earlier ones."""
         return list(range(-self.context_history, 1)) if self.context_history else None
 
     @property
     def action_delta_indices(self) -> None:
-        """TTP makes one decision."""
+        """One decision at a time."""
         return None
 
     @property
     def reward_delta_indices(self) -> None:
-        """TTP sees no reward."""
+        """No rewards are read."""
         return None
+
+
+# What `TTPConfig.compact` changes: eleven choices, and the sizes.
+COMPACT: dict[str, Any] = {
+    "prompt_tokens": "chosen",
+    "use_slots": False,
+    "relabel": True,
+    "rounds": 3,
+    "geometric_attention": True,
+    "pre_norm": True,
+    "pointer": "outputs",
+    "time_encoding": "fourier",
+    "situation_time": False,
+    "clashes": True,
+    "failures": True,
+    "dim_pose": 64,
+    "dim_extents": 32,
+    "dim_time": 16,
+    "dim_marker": 16,
+    "dim_feedforward": 256,
+    "n_heads": 4,
+}

@@ -1,4 +1,4 @@
-"""TTP as a LeRobot policy: pairs and loss in training, one prompt an episode at evaluation."""
+"""TTP as a LeRobot policy: prompt-situation pairs in training, one prompt an episode at rollout."""
 
 from typing import Any
 
@@ -11,29 +11,23 @@ from lerobot.utils.constants import ACTION
 from torch import Tensor, nn
 
 from kitchen_prefs.envs.lerobot_env import OBS_INSTANCES, OBS_PROMPT
-from kitchen_prefs.instances import POSE, PROMPT_CAPACITY
+from kitchen_prefs.instances import POSE, choosable, is_place_decision
 
 from ..common.categories import Categories
 from ..common.demonstration_store import DemonstrationStore
 from ..common.denoising import Denoiser
 from ..common.failed_choices import FailedChoices, synthesise_failures
-from ..common.instance_sets import (
-    accuracies,
-    choosable,
-    chosen_rows,
-    is_place_decision,
-    length_buckets,
-)
-from ..common.lerobot_features import shown
-from .attention import Tokens
+from ..common.instance_sets import accuracies, chosen_rows, length_buckets
+from ..common.lerobot_features import observed
+from .compact_network import CompactNetwork
 from .configuration_ttp import TTPConfig
-from .context_history import History, objects_of
-from .network import TTPNetwork
+from .context_history import ContextHistory, split_history
+from .network import Situations, TTPNetwork
 from .prompt_pairing import Pairs, make_pairs
-from .prompt_tokens import tokens_of_prompts
+from .prompt_tokens import split_prompts, tokens_of_prompts
 from .rack_poses import RackPoses
 from .relabelling import relabel
-from .situations import Situations
+from .transformer import Tokens
 
 
 class TTPPolicy(PreTrainedPolicy):
@@ -49,9 +43,9 @@ class TTPPolicy(PreTrainedPolicy):
 
         Args:
             config: The configuration.
-            dataset_meta: The metadata of the data set that is trained on. Without it the policy
-                acts but does not train.
-            **_: What else LeRobot offers to policies.
+            dataset_meta: The metadata of the training data set. Without it the policy can act but
+                not train.
+            **_: Other arguments of LeRobot's.
 
         Raises:
             ValueError: If the features or the data set's columns are not those of kitchen_prefs.
@@ -59,16 +53,16 @@ class TTPPolicy(PreTrainedPolicy):
         super().__init__(config)
         config.validate_features()
         self.config: TTPConfig = config
-        self.network = TTPNetwork(config)
-        self.recognition = Denoiser() if config.recognise else None
+        self.network = (CompactNetwork if config.departs_from_paper else TTPNetwork)(config)
+        self.recognition = Denoiser() if config.recognise else None  # named so in checkpoints
         self.demonstrations: DemonstrationStore | None = None
         if dataset_meta is not None:
             chosen_only = config.prompt_tokens == "chosen"
             self.demonstrations = DemonstrationStore.read(dataset_meta, chosen_only)
-            self.categories = Categories.of(self.demonstrations)
-            self.stands = RackPoses.of(self.demonstrations, self.categories)
+            self.categories = Categories.from_demonstrations(self.demonstrations)
+            self.rack_poses = RackPoses.from_demonstrations(self.demonstrations, self.categories)
             if self.recognition:
-                self.recognition.remember(self.demonstrations)
+                self.recognition.fit(self.demonstrations)
         self.reset()
 
     def get_optim_params(self) -> list[nn.Parameter]:
@@ -95,33 +89,33 @@ class TTPPolicy(PreTrainedPolicy):
         is_place = is_place_decision(pairs.sets)  # (S,)
         losses = pairs.sets.new_zeros(len(is_place))  # (S,)
         correct = torch.zeros_like(is_place)  # (S,)
-        for part in length_buckets(pairs.sets):
-            targets = pairs.targets[part]
-            scores = self._score(situations.select(part), preference, pairs.prompt_of[part])
-            losses[part] = F.cross_entropy(scores, targets, reduction="none")
-            correct[part] = scores.argmax(dim=1) == targets
+        for bucket in length_buckets(pairs.sets):
+            targets = pairs.targets[bucket]
+            scores = self._score(situations.select(bucket), preference, pairs.prompt_of[bucket])
+            losses[bucket] = F.cross_entropy(scores, targets, reduction="none")
+            correct[bucket] = scores.argmax(dim=1) == targets
         return losses.mean(), accuracies(correct, is_place)
 
     def pair(self, batch: dict[str, Tensor]) -> tuple[Pairs, Situations]:
         """Pair a batch with prompts; in training, augment the pairs.
 
         Args:
-            batch: What `forward` takes.
+            batch: The batch of `forward`.
 
         Returns:
-            The pairs, and their situations with what is known of the decisions before.
+            The pairs, and their situations with failed choices and history.
 
         Raises:
-            ValueError: What `forward` raises.
+            ValueError: As `forward` does.
         """
         if self.demonstrations is None:
             raise ValueError(
-                "TTP takes its prompts from the data set that it trains on; make it with "
+                "TTP draws its prompts from the training data set; make it with "
                 "dataset_meta=dataset.meta, as lerobot-train does."
             )
         # The draws depend on the batch alone, so that a resumed run repeats an unbroken one.
         generator = np.random.default_rng(batch["index"].cpu().numpy())
-        sets, history = _now_and_before(batch)  # (B, N, 13), (B, H, 13)
+        sets, history = split_history(batch)  # (B, N, 13), (B, K, 13)
         pairs = make_pairs(
             sets=sets,
             targets=chosen_rows(sets, batch[ACTION]),
@@ -132,7 +126,7 @@ class TTPPolicy(PreTrainedPolicy):
         )
         failed = torch.zeros(pairs.sets.shape[:2], dtype=torch.bool, device=pairs.sets.device)
         if self.training and self.config.relabel:
-            pairs = relabel(pairs, self.categories, self.stands, generator)
+            pairs = relabel(pairs, self.categories, self.rack_poses, generator)
         if self.training and self.config.failures:
             failed = synthesise_failures(pairs.sets, pairs.targets, self.categories, generator)
         return pairs, Situations(pairs.sets, failed, history[pairs.sample])
@@ -140,10 +134,10 @@ class TTPPolicy(PreTrainedPolicy):
     # Acting ----------------------------------------------------------------------------------
 
     def reset(self) -> None:
-        """Forget the prompt and the past: other episodes begin."""
+        """Forget prompt, failed choices and history: new episodes begin."""
         self._preference: Tokens | None = None
         self._failed_choices = FailedChoices()
-        self._history = History(self.config.context_history)
+        self._history = ContextHistory(self.config.context_history)
 
     @torch.no_grad()
     def select_action(self, batch: dict[str, Tensor], **_: Any) -> Tensor:
@@ -151,9 +145,9 @@ class TTPPolicy(PreTrainedPolicy):
 
         Args:
             batch: The observations of B environments. The prompts are read on the first call after
-                `reset`, and encoded once. Of several for an episode each gives its opinion; the
-                mean of their log-probabilities decides.
-            **_: What else LeRobot offers to policies.
+                `reset`, and encoded once. With several prompts for an episode, the mean of their
+                log-probabilities decides.
+            **_: Other arguments of LeRobot's.
 
         Returns:
             The poses of the chosen rows, (B, 7).
@@ -162,23 +156,27 @@ class TTPPolicy(PreTrainedPolicy):
             ValueError: If the sets or, on the first call, the prompts are missing.
         """
         self.eval()
-        observed = shown(batch, OBS_INSTANCES)  # (B, N, 13)
-        sets = self.recognition(observed) if self.recognition else observed
+        raw_sets = observed(batch, OBS_INSTANCES)  # (B, N, 13)
+        sets = self.recognition(raw_sets) if self.recognition else raw_sets
         if self._preference is None:
-            self._preference = self._encode(split_prompts(shown(batch, OBS_PROMPT)))
-        prompt_of = torch.arange(len(self._preference.features), device=sets.device)
-        environments = torch.arange(len(sets), device=sets.device)
-        asked = environments.repeat_interleave(len(prompt_of) // len(sets))  # (B V,)
-        situations = Situations(sets, self._failed_choices.find(sets), self._history.recall(sets))
-        scores = self._score(situations.select(asked), self._preference, prompt_of)  # (B V, M)
-        opinions = scores.log_softmax(dim=1).unflatten(0, (len(sets), -1))  # (B, V, M)
-        choices = opinions.mean(dim=1).argmax(dim=1)  # (B,)
-        self._failed_choices.remember(sets[environments, choices])
-        return observed[environments, choices][:, POSE]
+            self._preference = self._encode(split_prompts(observed(batch, OBS_PROMPT)))
+        situations = Situations(sets, self._failed_choices.find(sets), self._history.update(sets))
+        choices = self._log_probabilities(situations, self._preference).argmax(dim=1)  # (B,)
+        environments = torch.arange(len(sets), device=sets.device)  # (B,)
+        self._failed_choices.record(sets[environments, choices])
+        return raw_sets[environments, choices][:, POSE]
 
     def predict_action_chunk(self, batch: dict[str, Tensor], **_: Any) -> Tensor:
         """The action as a chunk of one, (B, 1, 7)."""
         return self.select_action(batch)[:, None]
+
+    def _log_probabilities(self, situations: Situations, preference: Tokens) -> Tensor:
+        """The log-probabilities of rows, the mean of V prompts for each of B situations, (B, M)."""
+        prompt_of = torch.arange(len(preference.features), device=preference.features.device)
+        situation_of = prompt_of // (len(prompt_of) // len(situations.sets))  # (B V,)
+        scores = self._score(situations.select(situation_of), preference, prompt_of)  # (B V, M)
+        log_probabilities = scores.log_softmax(dim=1)  # (B V, M)
+        return log_probabilities.unflatten(0, (len(situations.sets), -1)).mean(dim=1)
 
     # Both ------------------------------------------------------------------------------------
 
@@ -191,28 +189,3 @@ class TTPPolicy(PreTrainedPolicy):
         situations = situations.trimmed()
         scores = self.network.decide(situations, preference, prompt_of)
         return scores.masked_fill(~choosable(situations.sets), -torch.inf)
-
-
-def _now_and_before(batch: dict[str, Tensor]) -> tuple[Tensor, Tensor]:
-    """The sets of a batch, (B, N, 13), and the objects seen before, (B, H, 13)."""
-    sets = batch[OBS_INSTANCES]  # (B, N, 13), or (B, k + 1, N, 13) with a context history
-    if sets.ndim == 3:
-        return sets, sets[:, :0]
-    # LeRobot repeats the first frame of an episode where there is none before it.
-    is_there = ~batch[f"{OBS_INSTANCES}_is_pad"][:, :-1]  # (B, k)
-    return sets[:, -1], objects_of(sets[:, :-1] * is_there[..., None, None])
-
-
-def split_prompts(prompts: Tensor) -> Tensor:
-    """Take prompts of V demonstrations each apart, (B, V P, 14) -> (B V, P, 14).
-
-    Raises:
-        ValueError: If their length is not that of whole demonstrations.
-    """
-    capacity = min(PROMPT_CAPACITY, prompts.shape[1])
-    if prompts.shape[1] % capacity:
-        raise ValueError(
-            f"Prompts of several demonstrations have {PROMPT_CAPACITY} rows each, which "
-            f"{prompts.shape[1]} rows are not a multiple of; take them from the environment."
-        )
-    return prompts.unflatten(1, (-1, capacity)).flatten(0, 1)

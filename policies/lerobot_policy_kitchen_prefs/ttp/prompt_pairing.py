@@ -1,9 +1,9 @@
 """Prompt-situation pairs: one prompt for each preference of a batch, shared by its situations.
 
 The paper's objective (section 2.2) prompts all situations of a preference with one demonstration.
-So a batch holds a handful of prompts, and each is encoded once. Further rounds pair the same pick
-decisions with other prompts: the preference decides what is picked, while the place, in a
-demonstration, depends on the rack alone; and a sample that is loaded already comes cheap.
+So a batch has a handful of prompts, and each is encoded once. Further rounds pair the same pick
+decisions with other prompts, without loading more samples. Place decisions need only one round: in
+a demonstration, the preference determines what is picked, and the rack determines the place.
 
                  round 0              round 1
     sample       0  1  2 ... B - 1    0  2 ...      (1 is a place decision)
@@ -16,19 +16,20 @@ import numpy as np
 import torch
 from torch import Tensor
 
+from kitchen_prefs.instances import is_place_decision
+
 from ..common.demonstration_store import DemonstrationStore
-from ..common.instance_sets import is_place_decision
 
 
 class Pairs(NamedTuple):
-    """Situations and the prompts that go with them.
+    """Situations and their prompts.
 
     Attributes:
-        prompts: The demonstrations that prompt, zero-padded, (G, P, 14).
+        prompts: Demonstrations, zero-padded, (G, P, 14).
         sets: The situations, zero-padded, (S, N, 13).
         targets: The row that the expert chose in each situation, (S,) int64.
         prompt_of: The prompt of each situation, (S,) int64.
-        sample: The batch's sample that each situation is of, (S,) int64.
+        sample: The index in the batch of each situation's sample, (S,) int64.
     """
 
     prompts: Tensor
@@ -52,22 +53,22 @@ def make_pairs(
         sets: The samples' sets, (B, N, 13).
         targets: The rows that the expert chose, (B,) int64.
         episodes: The episode of each sample, (B,) int.
-        demonstrations: Where prompts come from.
-        rounds: With how many prompts each pick decision is paired.
+        demonstrations: The demonstrations to draw prompts from.
+        rounds: The number of prompts for each pick decision.
         generator: Source of randomness.
 
     Returns:
-        The pairs: all B samples in the first round, the pick decisions alone in the others.
+        The pairs: all B samples in the first round, only the pick decisions in the others.
     """
     labels, label_of = np.unique(demonstrations.preference[episodes], return_inverse=True)
     drawn = [
         demonstrations.draw(label, episodes, generator) for _ in range(rounds) for label in labels
     ]
-    everyone = torch.arange(len(sets), device=sets.device)
-    picks = everyone[~is_place_decision(sets)]
-    sample = torch.cat([everyone, picks.repeat(rounds - 1)])  # (S,)
+    samples = torch.arange(len(sets), device=sets.device)
+    picks = samples[~is_place_decision(sets)]
+    sample = torch.cat([samples, picks.repeat(rounds - 1)])  # (S,)
     later = torch.arange(1, rounds, device=sets.device).repeat_interleave(len(picks))
-    round_of = torch.cat([torch.zeros_like(everyone), later])  # (S,)
+    round_of = torch.cat([torch.zeros_like(samples), later])  # (S,)
     return Pairs(
         prompts=torch.from_numpy(demonstrations.prompts(drawn)).to(sets.device),
         sets=sets[sample],

@@ -1,17 +1,16 @@
 """From a whole demonstration to the rows of a prompt's tokens.
 
-The demonstration, as `kitchen_prefs.instances` draws it, has a row for each instance of each
-decision. The paper's tokens are all of them, with an ACT token (A) after each decision's
-set:
+A demonstration has a row for each instance of each decision (see `kitchen_prefs.instances`). The
+paper's tokens are all of them, with an ACT token (A) after each decision's set:
 
     [ set of decision 0 ] A [ set of decision 1 ] A ... [ set of decision T-1 ] A
 
-The compact tokens are the chosen rows alone, which the paper leaves out:
+The compact tokens are the chosen rows, which the paper leaves out:
 
     [ chosen row 0 ] [ chosen row 1 ] ... [ chosen row T-1 ]
 
-The final tokens are the dishes in the racks as each rack was last seen, in no order and without
-time: what remains of a preference where only the final arrangement is looked at.
+The final tokens are the dishes in each rack when it was last visible, without order and time: the
+information that the final arrangement has about a preference.
 
     [ dish in the bottom rack ] ... [ dish in the top rack ] ...
 """
@@ -20,10 +19,10 @@ import torch
 import torch.nn.functional as F
 from torch import Tensor
 
-from kitchen_prefs.instances import CHOSEN, COLUMNS, DECISION
+from kitchen_prefs.instances import CHOSEN, COLUMNS, DECISION, PROMPT_CAPACITY, is_real
 
-from ..common.instance_sets import is_dish, is_real, keep
-from .rack_poses import RACKS, find_racks
+from ..common.dish_locations import in_rack, in_top_rack
+from ..common.instance_sets import is_dish, select_rows
 
 
 def tokens_of_prompts(prompts: Tensor, kind: str) -> tuple[Tensor, Tensor]:
@@ -37,32 +36,45 @@ def tokens_of_prompts(prompts: Tensor, kind: str) -> tuple[Tensor, Tensor]:
         The tokens' rows, (G, L, 13), and which of them are real, (G, L) bool.
     """
     if kind == "chosen":
-        rows, mask = keep(prompts, is_real(prompts) & (prompts[..., CHOSEN] > 0))
+        rows, mask = select_rows(prompts, is_real(prompts) & (prompts[..., CHOSEN] > 0))
         return rows[..., :COLUMNS], mask
     if kind == "final":
-        rows, mask = keep(prompts[..., :COLUMNS], in_the_end(prompts))
+        rows, mask = select_rows(prompts[..., :COLUMNS], in_the_end(prompts))
         return rows.index_fill(-1, torch.tensor([DECISION], device=rows.device), 0), mask
-    return _with_act_tokens(*keep(prompts[..., :COLUMNS], is_real(prompts)))
+    return _with_act_tokens(*select_rows(prompts[..., :COLUMNS], is_real(prompts)))
 
 
 def in_the_end(prompts: Tensor) -> Tensor:
-    """Which rows are dishes in a rack at the last decision that saw that rack.
+    """Which rows are dishes in a rack at the last decision at which that rack was visible.
 
     Args:
         prompts: Demonstrations, zero-padded, (G, P, 14).
 
     Returns:
-        A mask, (G, P) bool. A dish never leaves a rack, so the last decision that saw dishes in a
-        rack saw all of them.
+        A mask, (G, P) bool. A dish never leaves a rack, so the last decision with dishes of a rack
+        has all of them.
     """
-    rack, in_rack = find_racks(prompts)
-    stands = is_dish(prompts) & in_rack  # (G, P)
-    last_seen = torch.zeros_like(stands)
-    for one in range(RACKS):
-        in_this = stands & (rack == one)
+    racked, top = is_dish(prompts) & in_rack(prompts), in_top_rack(prompts)  # (G, P) each
+    last = torch.zeros_like(racked)
+    for in_this in (racked & ~top, racked & top):
         decision = prompts[..., DECISION].where(in_this, -1)  # (G, P)
-        last_seen |= in_this & (decision == decision.amax(dim=1, keepdim=True))
-    return last_seen
+        last |= in_this & (decision == decision.amax(dim=1, keepdim=True))
+    return last
+
+
+def split_prompts(prompts: Tensor) -> Tensor:
+    """Split prompts of V demonstrations each, (B, V P, 14) -> (B V, P, 14).
+
+    Raises:
+        ValueError: If their length is not that of whole demonstrations.
+    """
+    capacity = min(PROMPT_CAPACITY, prompts.shape[1])
+    if prompts.shape[1] % capacity:
+        raise ValueError(
+            f"A prompt of several demonstrations has a multiple of {PROMPT_CAPACITY} rows, not "
+            f"{prompts.shape[1]}; take it from the environment."
+        )
+    return prompts.unflatten(1, (-1, capacity)).flatten(0, 1)
 
 
 def _with_act_tokens(rows: Tensor, mask: Tensor) -> tuple[Tensor, Tensor]:

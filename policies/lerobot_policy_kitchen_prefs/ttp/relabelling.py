@@ -1,28 +1,28 @@
-"""Relabelling: other people of the same task, made of the seven that training knows.
+"""Relabelling: augments the seven training preferences by permuting the categories.
 
-Who loads cups as others load plates holds another preference of the same task. So a permutation of
-the categories, applied to prompt and situation together, turns seven preferences into thousands,
-and the network learns to read the prompt instead of knowing the seven by heart.
+A permutation of the categories, applied to prompt and situation together, turns a preference into
+another preference of the same task. So the network sees thousands of preferences instead of seven,
+and learns to read the prompt instead of memorising the seven.
 
-A category is its extents and where it stands. A relabelled dish takes the extents of its new
-category; on the counter it stands as high as they make it, and in a rack as demonstrations stood
-such dishes there. If it kept its pose, the pose would tell the old category, and the network would
-know the seven preferences by heart after all. Dishes are moved one by one and may overlap, which
-pick decisions do not mind; where no demonstration put such a dish into that rack, the pose is kept.
-Place decisions keep their categories, because a placement fits one category alone; and in a
-demonstration they do not depend on the preference, but on the rack that is out and on what stands
-in it.
+A category shows in the extents and in the pose. A relabelled dish takes the extents of its new
+category; on the counter its height follows from them, and in a rack it takes a pose that
+demonstrations gave to the new category there. An unchanged pose would give the old category away.
+Dishes are moved independently and may overlap, which pick decisions do not depend on; where no
+demonstration put such a dish into that rack, the pose is kept.
+
+Place decisions keep their categories, because a placement fits only one category; and in a
+demonstration they do not depend on the preference, but on the rack that is out and its dishes.
 """
 
 import numpy as np
 import torch
 from torch import Tensor
 
-from kitchen_prefs.instances import EXTENTS, IS_OBJECT, POSE, POSITION
+from kitchen_prefs.instances import EXTENTS, POSE, POSITION, is_place_decision
 from kitchen_prefs.simulation.layout import COUNTER_HEIGHT
 
-from ..common.categories import TOLERANCE, Categories
-from ..common.instance_sets import is_place_decision
+from ..common.categories import Categories
+from ..common.dish_locations import on_counter
 from .prompt_pairing import Pairs
 from .rack_poses import RackPoses
 
@@ -31,14 +31,14 @@ ELEVATION = POSITION.stop - 1
 
 
 def relabel(
-    pairs: Pairs, categories: Categories, stands: RackPoses, generator: np.random.Generator
+    pairs: Pairs, categories: Categories, rack_poses: RackPoses, generator: np.random.Generator
 ) -> Pairs:
     """Relabel each prompt by a permutation of its own, and its pick situations by the same.
 
     Args:
-        pairs: Prompts and situations, seen exactly.
-        categories: What is permuted.
-        stands: Where dishes of each category stand in the racks.
+        pairs: Prompts and situations, observed without noise.
+        categories: The categories to permute.
+        rack_poses: The poses of each category in the racks.
         generator: Source of randomness.
 
     Returns:
@@ -48,22 +48,16 @@ def relabel(
     permutations = torch.from_numpy(generator.permuted(identity, axis=1)).to(pairs.sets.device)
 
     def permute(rows: Tensor, permutations: Tensor) -> Tensor:  # (B, N, D), (B, C) -> (B, N, D)
-        old, is_dish = categories.find(rows)  # (B, N)
-        new = permutations.gather(1, old)
+        old, has_category = categories.find(rows)  # (B, N) each
+        new = permutations.gather(1, old)  # (B, N)
         relabelled = rows.clone()
         relabelled[..., EXTENTS] = categories.extents.to(rows.device)[new]
-        relabelled[..., POSE] = stands.move(rows, new, generator)
-        standing = COUNTER_HEIGHT + relabelled[..., HEIGHT] / 2
-        relabelled[..., ELEVATION] = standing.where(on_counter(rows), relabelled[..., ELEVATION])
-        return relabelled.where(is_dish[..., None], rows)
+        relabelled[..., POSE] = rack_poses.draw(rows, new, generator)
+        upright = COUNTER_HEIGHT + relabelled[..., HEIGHT] / 2  # (B, N)
+        relabelled[..., ELEVATION] = upright.where(on_counter(rows), relabelled[..., ELEVATION])
+        return relabelled.where(has_category[..., None], rows)
 
     is_pick = ~is_place_decision(pairs.sets)  # (S,)
     sets = pairs.sets.clone()
     sets[is_pick] = permute(sets[is_pick], permutations[pairs.prompt_of[is_pick]])
     return pairs._replace(prompts=permute(pairs.prompts, permutations), sets=sets)
-
-
-def on_counter(rows: Tensor) -> Tensor:
-    """Which objects, (..., D), stand on the counter, (...) bool."""
-    bottom = rows[..., ELEVATION] - rows[..., HEIGHT] / 2
-    return (rows[..., IS_OBJECT] > 0) & ((bottom - COUNTER_HEIGHT).abs() < TOLERANCE)

@@ -1,30 +1,106 @@
-"""The layers of prompt encoder and situation decoder (Vaswani et al., 2017)."""
+"""The transformer of the paper: post-norm layers over sets of tokens (Vaswani et al., 2017)."""
 
 from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Self
 
+import torch.nn.functional as F
 from torch import Tensor, nn
 
-from .attention import Attention, GeometricScores, Tokens
 from .configuration_ttp import TTPConfig
 
-# Where geometric attention starts, head by head. Two extents that differ by 5 cm, as those of most
-# categories do, cost a score of 4; two positions 20 cm apart cost 2.4, or 12 where a head looks for
-# the nearest objects.
-ALIKE = (1500.0, 0.0, 0.0)
-NEAR = (0.0, 60.0, 0.0)
-NEAREST_OBJECTS = (0.0, 300.0, 10.0)
-PLAIN = (0.0, 0.0, 0.0)
+
+@dataclass(frozen=True)
+class Tokens:
+    """Sets of tokens.
+
+    Attributes:
+        features: The tokens, (B, N, d).
+        mask: Which of them are real and attended to, (B, N) bool.
+    """
+
+    features: Tensor
+    mask: Tensor
+
+    def with_features(self, features: Tensor) -> Self:
+        """The same tokens with other features."""
+        return replace(self, features=features)
+
+
+class Attention(nn.Module):
+    """Multi-head attention of tokens to a memory."""
+
+    def __init__(self, dim: int, heads: int) -> None:
+        """Make `heads` heads that share `dim` dimensions."""
+        super().__init__()
+        self.dim, self.heads = dim, heads
+        self.query = nn.Linear(dim, dim)
+        self.key_value = nn.Linear(dim, 2 * dim)
+        self.output = nn.Linear(dim, dim)
+
+    def forward(self, tokens: Tokens, memory: Tokens, memory_of: Tensor | None = None) -> Tensor:
+        """Attend.
+
+        Args:
+            tokens: What attends, B sets of N tokens.
+            memory: What is attended to, G sets of M tokens.
+            memory_of: The memory of each of the B sets, (B,) int; absent where G = B. A memory is
+                projected once, however many sets attend to it.
+
+        Returns:
+            The attended values, (B, N, d).
+        """
+        queries, keys, values = self.project(tokens, memory)
+        mask = memory.mask[:, None, None]  # (G, 1, 1, M)
+        if memory_of is not None:
+            keys, values, mask = keys[memory_of], values[memory_of], mask[memory_of]
+        attended = F.scaled_dot_product_attention(queries, keys, values, attn_mask=mask)
+        attended = attended[..., : self.dim // self.heads]  # (B, h, N, d/h)
+        return self.output(attended.transpose(1, 2).flatten(2))  # (B, N, d)
+
+    def project(self, tokens: Tokens, memory: Tokens) -> tuple[Tensor, Tensor, Tensor]:
+        """The queries, (B, h, N, d/h), the keys and the values, (G, h, M, d/h) each."""
+        queries = self._split(self.query(tokens.features))
+        keys, values = map(self._split, self.key_value(memory.features).chunk(2, dim=-1))
+        return queries, keys, values
+
+    def _split(self, features: Tensor) -> Tensor:
+        return features.unflatten(-1, (self.heads, -1)).transpose(1, 2)  # (B, h, N, d/h)
+
+
+class Residual(nn.Module):
+    """A sub-layer that is added to its input, then normalised."""
+
+    def __init__(self, dim: int) -> None:
+        """Make the normalisation of `dim` dimensions."""
+        super().__init__()
+        self.norm = nn.LayerNorm(dim)
+
+    def forward(self, tokens: Tokens, sublayer: Callable[[Tokens], Tensor]) -> Tokens:
+        """Apply a sub-layer to sets of tokens."""
+        return tokens.with_features(self.norm(tokens.features + sublayer(tokens)))
 
 
 class EncoderLayer(nn.Module):
-    """Self-attention and a feed-forward network."""
+    """A layer of f_te: self-attention and a feed-forward network."""
 
-    def __init__(self, config: TTPConfig) -> None:
-        """Make a layer of the configured sizes."""
+    def __init__(
+        self,
+        config: TTPConfig,
+        self_attention: Callable[[int, int], Attention] = Attention,
+        residual: Callable[[int], Residual] = Residual,
+    ) -> None:
+        """Make a layer of the configured sizes.
+
+        Args:
+            config: The configuration.
+            self_attention: Makes the attention from its dimensions and its heads.
+            residual: Makes a residual connection from its dimensions.
+        """
         super().__init__()
-        self.attention = self_attention(config)
+        self.attention = self_attention(config.dim, config.n_heads)
         self.feedforward = feedforward(config)
-        self.residuals = nn.ModuleList(Residual(config) for _ in range(2))
+        self.residuals = nn.ModuleList(residual(config.dim) for _ in range(2))
 
     def forward(self, tokens: Tokens) -> Tokens:
         """Transform sets of tokens."""
@@ -34,22 +110,28 @@ class EncoderLayer(nn.Module):
 
 
 class DecoderLayer(nn.Module):
-    """Self-attention, cross-attention to the preference embedding, and a feed-forward network."""
+    """A layer of f_td: self-attention, cross-attention to gamma, and a feed-forward network."""
 
-    def __init__(self, config: TTPConfig) -> None:
-        """Make a layer of the configured sizes."""
+    def __init__(
+        self,
+        config: TTPConfig,
+        self_attention: Callable[[int, int], Attention] = Attention,
+        cross_attention: Callable[[int, int], Attention] = Attention,
+        residual: Callable[[int], Residual] = Residual,
+    ) -> None:
+        """Make a layer of the configured sizes; the arguments are those of `EncoderLayer`."""
         super().__init__()
-        self.attention = self_attention(config)
-        self.cross_attention = cross_attention(config)
+        self.attention = self_attention(config.dim, config.n_heads)
+        self.cross_attention = cross_attention(config.dim, config.n_heads)
         self.feedforward = feedforward(config)
-        self.residuals = nn.ModuleList(Residual(config) for _ in range(3))
+        self.residuals = nn.ModuleList(residual(config.dim) for _ in range(3))
 
     def forward(self, tokens: Tokens, preference: Tokens, prompt_of: Tensor) -> Tokens:
         """Transform sets of tokens.
 
         Args:
             tokens: The tokens of B situations.
-            preference: The encoded prompts, G of them.
+            preference: The preference embeddings gamma of G prompts.
             prompt_of: The prompt of each situation, (B,) int.
 
         Returns:
@@ -61,23 +143,6 @@ class DecoderLayer(nn.Module):
         return feed(tokens, lambda x: self.feedforward(x.features))
 
 
-class Residual(nn.Module):
-    """A sub-layer added to its input, with layer normalisation before it or after the sum."""
-
-    def __init__(self, config: TTPConfig) -> None:
-        """Make the normalisation."""
-        super().__init__()
-        self.pre_norm = config.pre_norm
-        self.norm = nn.LayerNorm(config.dim)
-
-    def forward(self, tokens: Tokens, sublayer: Callable[[Tokens], Tensor]) -> Tokens:
-        """Apply a sub-layer to sets of tokens."""
-        if self.pre_norm:
-            normalised = tokens.with_features(self.norm(tokens.features))
-            return tokens.with_features(tokens.features + sublayer(normalised))
-        return tokens.with_features(self.norm(tokens.features + sublayer(tokens)))
-
-
 def feedforward(config: TTPConfig) -> nn.Sequential:
     """Make the feed-forward network of a layer."""
     return nn.Sequential(
@@ -85,20 +150,3 @@ def feedforward(config: TTPConfig) -> nn.Sequential:
         nn.ReLU(),
         nn.Linear(config.dim_feedforward, config.dim),
     )
-
-
-def self_attention(config: TTPConfig) -> Attention:
-    """Make the attention of a set to itself."""
-    return _attention(config, [ALIKE, NEAR, NEAREST_OBJECTS])
-
-
-def cross_attention(config: TTPConfig) -> Attention:
-    """Make the attention of a situation to a prompt: half of the heads look for what is alike."""
-    return _attention(config, [ALIKE] * ((config.n_heads + 1) // 2))
-
-
-def _attention(config: TTPConfig, start: list[tuple[float, float, float]]) -> Attention:
-    if not config.geometric_attention:
-        return Attention(config.dim, config.n_heads, None)
-    start = (start + [PLAIN] * config.n_heads)[: config.n_heads]
-    return Attention(config.dim, config.n_heads, GeometricScores(start))

@@ -38,6 +38,7 @@ def files_in(folder):
     return {str(path.relative_to(folder)): path.read_bytes() for path in paths}
 
 
+@pytest.mark.lerobot
 def test_every_file_arrives_and_lerobot_loads_the_data_set(hub, root, tmp_path):
     whole = files_in(root)
     (root / "notes.txt").write_text("mine")  # no part of the data set, so it stays here
@@ -66,6 +67,7 @@ def load_from(hub, folder):
     return run(hub, "-c", textwrap.dedent(program))
 
 
+@pytest.mark.lerobot
 def test_the_tag_of_what_was_there_moves(hub, root):
     older = Commit("Older", "", {"README.md": b"# Older", "LICENSE": b"Apache"})
     repository = Repository({"visibility": "public"}, [older], {"v3.0": older})

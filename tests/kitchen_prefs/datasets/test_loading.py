@@ -137,6 +137,7 @@ def test_a_loaded_data_set_holds_demonstrations(small, home, monkeypatch):
     assert last["next.success"]
 
 
+@pytest.mark.lerobot
 def test_plain_lerobot_reads_it_without_this_package(small, tmp_path):
     program = (
         "import sys\n"
@@ -163,6 +164,7 @@ def test_plain_lerobot_reads_it_without_this_package(small, tmp_path):
     assert done.stdout == "4 torch.Size([72, 13])\n"
 
 
+@pytest.mark.lerobot
 def test_lerobot_merges_data_sets(small, home, monkeypatch):
     from lerobot.datasets import merge_datasets
 
@@ -301,6 +303,7 @@ def test_a_home_that_cannot_be_written_is_told(tmp_path, monkeypatch):
         make_dataset(SMALL)
 
 
+@pytest.mark.lerobot
 def test_two_processes_that_ask_at_once_share_one_data_set(home):
     both = [_make_elsewhere(SMALL, home) for _ in range(2)]
     for process in both:
@@ -310,6 +313,7 @@ def test_two_processes_that_ask_at_once_share_one_data_set(home):
     assert load_dataset(SMALL).num_episodes == 4
 
 
+@pytest.mark.lerobot
 def test_a_script_that_has_used_torchs_threads_makes_a_data_set(home):
     """The workers are forked from a process with threads, and the script has no main guard."""
     script = home / "script.py"
@@ -335,6 +339,7 @@ def test_a_script_that_has_used_torchs_threads_makes_a_data_set(home):
     assert done.stdout == "4\n"
 
 
+@pytest.mark.lerobot
 def test_after_a_kill_the_data_set_is_made_anew(home):
     process = _make_elsewhere(LARGE, home)
     unfinished = dataset_root(LARGE).with_name(f".{LARGE}.unfinished")

@@ -15,6 +15,7 @@ def saved(monkeypatch):
     return records
 
 
+@pytest.mark.slow
 def test_check_carries_the_experts_loads_and_records_the_share(saved):
     result = CliRunner().invoke(app, ["check-placements", "--sessions", "1"])
     assert result.exit_code == 0, result.output

@@ -370,6 +370,7 @@ def test_the_committed_facts_are_those_of_the_tables():
         assert (ROOT / "docs" / "results" / f"{name}.png").exists()
 
 
+@pytest.mark.lerobot
 @pytest.mark.slow
 def test_a_tiny_table_is_run_once_and_reported(tmp_path, monkeypatch):
     tiny = Training("tiny", "dishwasher-train-p2-d3-v1", 4, SMALL)

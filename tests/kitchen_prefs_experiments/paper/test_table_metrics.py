@@ -150,6 +150,7 @@ def home(tmp_path, monkeypatch):
     return tmp_path
 
 
+@pytest.mark.lerobot
 @pytest.mark.slow
 def test_a_network_is_fine_tuned_on_one_demonstration(home, monkeypatch):
     monkeypatch.setattr(FineTuning, "trainings", property(_first_one(FineTuning.trainings.fget)))
@@ -177,6 +178,7 @@ def test_a_network_is_fine_tuned_on_one_demonstration(home, monkeypatch):
     assert run_table("tiny", table, 8, 2, home / "out")["rows"] == rows
 
 
+@pytest.mark.lerobot
 @pytest.mark.slow
 def test_a_history_is_trained_and_measured_on_its_preference(home):
     tiny = Training(

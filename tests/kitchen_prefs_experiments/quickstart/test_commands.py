@@ -57,6 +57,7 @@ def test_what_lerobot_train_logs_beside_its_bar_is_kept(tmp_path):
     assert (tmp_path / "train.log").read_text().splitlines()[-1] == "end"
 
 
+@pytest.mark.lerobot
 def test_a_failed_training_names_its_log(tmp_path, monkeypatch):
     monkeypatch.setattr(training, "recipe_file", lambda recipe: tmp_path / "missing.yaml")
     with pytest.raises(OSError, match=r"run\.log says why"):

@@ -1,4 +1,4 @@
-"""What is seen noisily is taken for what is known."""
+"""Denoising: noisy observations are snapped to known extents and poses."""
 
 import numpy as np
 import pytest
@@ -8,21 +8,21 @@ from hypothesis import strategies as st
 
 from kitchen_prefs.envs.observations import EXTENT_NOISE, POSITION_NOISE
 from kitchen_prefs.instances import EXTENTS, IS_OBJECT, POSE, POSITION
-from lerobot_policy_kitchen_prefs.common import denoising as recognising
+from lerobot_policy_kitchen_prefs.common import denoising
 from lerobot_policy_kitchen_prefs.common.denoising import Denoiser
-from lerobot_policy_kitchen_prefs.ttp.rack_poses import find_racks
+from lerobot_policy_kitchen_prefs.common.dish_locations import in_rack
 
 SEEDS = st.integers(0, 10_000)
 
 
 @pytest.fixture(scope="module")
-def recognition(demonstrations):
-    recognition = Denoiser()
-    recognition.remember(demonstrations)
-    return recognition
+def denoiser(demonstrations):
+    denoiser = Denoiser()
+    denoiser.fit(demonstrations)
+    return denoiser
 
 
-def seen_noisily(sets, generator):
+def with_noise(sets, generator):
     """The sets with the errors of the split `noisy`, about dishes and the one in the hand."""
     is_dish = sets[..., IS_OBJECT] > 0
     of_extents, of_position = torch.from_numpy(
@@ -35,36 +35,36 @@ def seen_noisily(sets, generator):
     return sets
 
 
-def test_what_is_seen_exactly_is_recognised_as_it_is(pairs, recognition):
-    assert torch.equal(recognition(pairs.sets), pairs.sets)
+def test_exact_observations_stay_as_they_are(pairs, denoiser):
+    assert torch.equal(denoiser(pairs.sets), pairs.sets)
 
 
 @settings(max_examples=10, deadline=None)
 @given(seed=SEEDS)
-def test_noisy_dishes_are_recognised(pairs, categories, recognition, seed):
-    noisy = seen_noisily(pairs.sets, np.random.default_rng(seed))
-    recognised = recognition(noisy)
+def test_noisy_dishes_are_denoised(pairs, categories, denoiser, seed):
+    noisy = with_noise(pairs.sets, np.random.default_rng(seed))
+    denoised = denoiser(noisy)
     is_dish = categories.find(pairs.sets)[1]  # (S, N)
-    right = (recognised[..., EXTENTS] == pairs.sets[..., EXTENTS]).all(dim=-1)
+    right = (denoised[..., EXTENTS] == pairs.sets[..., EXTENTS]).all(dim=-1)
     assert right[is_dish].float().mean() > 0.999
-    in_rack = is_dish & find_racks(pairs.sets)[1]
-    right = (recognised[..., POSE] == pairs.sets[..., POSE]).all(dim=-1)
-    assert right[in_rack].float().mean() > 0.999
-    on_counter = is_dish & ~in_rack
-    assert torch.equal(recognised[on_counter][:, POSE], noisy[on_counter][:, POSE])
+    racked = is_dish & in_rack(pairs.sets)
+    right = (denoised[..., POSE] == pairs.sets[..., POSE]).all(dim=-1)
+    assert right[racked].float().mean() > 0.999
+    on_counter = is_dish & ~racked
+    assert torch.equal(denoised[on_counter][:, POSE], noisy[on_counter][:, POSE])
 
 
-def test_what_is_unknown_is_left_as_it_is(pairs, recognition):
+def test_unknown_sizes_stay_as_they_are(pairs, denoiser):
     larger = pairs.sets.clone()
     larger[..., EXTENTS] *= 3
-    assert torch.equal(recognition(larger), larger)
+    assert torch.equal(denoiser(larger), larger)
 
 
-def test_without_a_memory_nothing_is_recognised(pairs):
+def test_without_known_places_nothing_changes(pairs):
     assert torch.equal(Denoiser()(pairs.sets), pairs.sets)
 
 
-def test_a_memory_that_is_too_small_is_named(demonstrations, monkeypatch):
-    monkeypatch.setattr(recognising, "CAPACITY", 5)
-    with pytest.raises(ValueError, match=r"show \d+ places, and 5 can be remembered"):
-        Denoiser().remember(demonstrations)
+def test_too_many_places_are_refused(demonstrations, monkeypatch):
+    monkeypatch.setattr(denoising, "CAPACITY", 5)
+    with pytest.raises(ValueError, match=r"show \d+ places, and 5 can be stored"):
+        Denoiser().fit(demonstrations)

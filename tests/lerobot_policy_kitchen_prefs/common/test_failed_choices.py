@@ -1,4 +1,4 @@
-"""Failures: found again while nothing has changed, forgotten after a success, and invented."""
+"""Failed choices: found again while nothing has changed, forgotten after a success, synthesised."""
 
 import gymnasium
 import numpy as np
@@ -9,39 +9,38 @@ from hypothesis import strategies as st
 
 from kitchen_prefs import instances
 from kitchen_prefs.envs.demonstrations import demonstrate
-from kitchen_prefs.instances import IS_OBJECT, IS_PLACE, POSE, POSITION
+from kitchen_prefs.instances import IS_OBJECT, IS_PLACE, POSE, POSITION, choosable
 from kitchen_prefs.simulation.sessions import make_session
 from lerobot_policy_kitchen_prefs.common.failed_choices import FailedChoices, synthesise_failures
-from lerobot_policy_kitchen_prefs.common.instance_sets import choosable
 
 SEEDS = st.integers(0, 10_000)
 DECISIONS = 60
 
 
-class Playthrough:
-    """One environment, played by the expert and by chance in turn."""
+class RandomRollout:
+    """One environment, rolled out by the expert and at random in turn."""
 
     def __init__(self, session):
         self.environment = gymnasium.make(
             "kitchen_prefs/DishwasherLoading-v0", split="seen"
         ).unwrapped
         self.set = self.environment.reset(seed=session)[0]["instances"]
-        self.chance = np.random.default_rng(session)
-        self.in_vain = set()  # instances, by what the environment says
+        self.generator = np.random.default_rng(session)
+        self.failed = set()  # instances, by what the environment says
         self.refusals = 0
 
     def choose(self):
         """Choose a row, right or wrong, and give it back, (13,)."""
         rows = np.flatnonzero(instances.choosable(self.set))
-        row = self.chance.choice(rows)
-        if self.chance.random() < 0.3:
+        row = self.generator.choice(rows)
+        if self.generator.random() < 0.3:
             expert = self.environment.expert_action()
             row = rows[(self.set[rows, POSE] == expert).all(axis=1)][0]
         choice = self.set[row]
         instance = self.environment.instance_of(choice[POSE])
         observation, _, _, _, info = self.environment.step(choice[POSE])
         self.set = observation["instances"]
-        self.in_vain = self.in_vain | {instance} if info["refusal"] else set()
+        self.failed = self.failed | {instance} if info["refusal"] else set()
         self.refusals += bool(info["refusal"])
         return choice
 
@@ -50,17 +49,17 @@ class Playthrough:
 
 
 def test_what_the_kitchen_refused_is_marked_until_something_succeeds():
-    playthroughs = [Playthrough(session) for session in range(3)]
+    rollouts = [RandomRollout(session) for session in range(3)]
     failures = FailedChoices()
     for _ in range(DECISIONS):
-        sets = torch.from_numpy(np.stack([playthrough.set for playthrough in playthroughs]))
+        sets = torch.from_numpy(np.stack([rollout.set for rollout in rollouts]))
         marks = failures.find(sets).numpy()
-        for playthrough, marked in zip(playthroughs, marks, strict=True):
-            assert playthrough.instances(marked) == playthrough.in_vain
-        choices = np.stack([playthrough.choose() for playthrough in playthroughs])
-        failures.remember(torch.from_numpy(choices))
-    for playthrough in playthroughs:
-        assert 5 < playthrough.refusals < DECISIONS - 5
+        for rollout, marked in zip(rollouts, marks, strict=True):
+            assert rollout.instances(marked) == rollout.failed
+        choices = np.stack([rollout.choose() for rollout in rollouts])
+        failures.record(torch.from_numpy(choices))
+    for rollout in rollouts:
+        assert 5 < rollout.refusals < DECISIONS - 5
 
 
 def first_sets():
@@ -69,7 +68,7 @@ def first_sets():
     return torch.from_numpy(np.stack([demonstrate(session).instances[0] for session in sessions]))
 
 
-def seen_again(sets, generator):
+def observed_again(sets, generator):
     """The same sets, with dishes up to 1 cm elsewhere and rows in another order; and the order."""
     errors = torch.from_numpy(generator.uniform(-0.01, 0.01, (*sets.shape[:2], 3))).float()
     again = sets.clone()
@@ -80,11 +79,11 @@ def seen_again(sets, generator):
 
 @settings(max_examples=30, deadline=None)
 @given(seed=SEEDS)
-def test_a_failure_is_found_again_though_sight_is_noisy(seed):
+def test_a_failure_is_found_again_under_noise(seed):
     generator = np.random.default_rng(seed)
     sets, failures, failed = first_sets(), FailedChoices(), []
     for _ in range(3):
-        seen, order = seen_again(sets, generator)
+        seen, order = observed_again(sets, generator)
         marks = failures.find(seen)
         expected = torch.zeros_like(marks)
         for rows in failed:
@@ -92,10 +91,10 @@ def test_a_failure_is_found_again_though_sight_is_noisy(seed):
         assert torch.equal(marks, expected)
         rows = torch.tensor([generator.choice(may.nonzero()[:, 0]) for may in choosable(sets)])
         failed.append(rows)
-        failures.remember(seen[torch.arange(4), order.argsort()[rows]])
+        failures.record(seen[torch.arange(4), order.argsort()[rows]])
 
 
-def test_nothing_is_remembered_before_the_first_choice():
+def test_nothing_has_failed_before_the_first_choice():
     assert not FailedChoices().find(first_sets()).any()
 
 
@@ -103,14 +102,14 @@ def test_a_success_in_one_episode_leaves_the_failures_of_the_others():
     sets = first_sets()
     rows = (sets[..., IS_OBJECT] > 0).int().argmax(dim=1)
     failures = FailedChoices()
-    failures.remember(sets[torch.arange(4), rows])
+    failures.record(sets[torch.arange(4), rows])
     sets[2, rows[2]] = 0  # the dish was picked, the rack moved
     assert failures.find(sets).sum(dim=1).tolist() == [1, 1, 0, 1]
 
 
 @settings(max_examples=30, deadline=None)
 @given(seed=SEEDS)
-def test_invented_failures_are_choices_that_may_have_failed(pairs, categories, seed):
+def test_synthesised_failures_are_choices_that_may_have_failed(pairs, categories, seed):
     marks = synthesise_failures(pairs.sets, pairs.targets, categories, np.random.default_rng(seed))
     assert not (marks & ~choosable(pairs.sets)).any()
     situations = torch.arange(len(pairs.sets))
@@ -120,7 +119,7 @@ def test_invented_failures_are_choices_that_may_have_failed(pairs, categories, s
     assert categories.find(target[target_failed])[1].all()
 
 
-def test_invented_failures_leave_some_situations_alone_and_spare_no_kind(pairs, categories):
+def test_synthesised_failures_leave_some_situations_alone_and_spare_no_kind(pairs, categories):
     generator = np.random.default_rng(0)
     marks = torch.stack(
         [synthesise_failures(pairs.sets, pairs.targets, categories, generator) for _ in range(40)]

@@ -7,19 +7,25 @@ import torch.nn.functional as F
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from lerobot.configs import FeatureType, PolicyFeature
-from lerobot.datasets import LeRobotDataset
 
-from kitchen_prefs.datasets import make_dataset
 from kitchen_prefs.envs.demonstrations import demonstrate
-from kitchen_prefs.instances import CAPACITY, COLUMNS, DECISION, IS_OBJECT, IS_PLACE, POSE
+from kitchen_prefs.instances import (
+    CAPACITY,
+    COLUMNS,
+    DECISION,
+    IS_OBJECT,
+    IS_PLACE,
+    POSE,
+    choosable,
+    is_real,
+)
 from kitchen_prefs.preferences import TWELVE
 from kitchen_prefs.simulation.sessions import make_session
-from lerobot_policy_kitchen_prefs.common.instance_sets import choosable, chosen_rows, is_real
+from lerobot_policy_kitchen_prefs.common.instance_sets import chosen_rows
 from lerobot_policy_kitchen_prefs.gnn import GNNConfig
 from lerobot_policy_kitchen_prefs.gnn.modeling_gnn import GNNPolicy
-from lerobot_policy_kitchen_prefs.gnn.network import NEVER, GraphAttention, one_hot
+from lerobot_policy_kitchen_prefs.gnn.network import EXCLUDED, GraphAttention, one_hot
 
-NAME = "dishwasher-train-p2-d3-v1"  # two preferences, three demonstrations each
 PAPER: dict = {}
 # All that departs from the paper, as in the recipe gnn_tuned.
 TUNED = {
@@ -32,14 +38,6 @@ TUNED = {
     "recognise": True,
 }
 BOTH = pytest.mark.parametrize("kind", [PAPER, TUNED], ids=["paper", "tuned"])
-
-
-@pytest.fixture(scope="module")
-def dataset(tmp_path_factory):
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("HF_LEROBOT_HOME", str(tmp_path_factory.mktemp("home")))
-        root = make_dataset(NAME)
-    return LeRobotDataset(f"kitchen_prefs/{NAME}", root=root)
 
 
 def make_policy(dataset=None, **kind):
@@ -73,7 +71,7 @@ def observations(sessions, decision=0):
     }
 
 
-def judged(policy, batch):
+def scores_of(policy, batch):
     """The scores, (B, N), where every other row that can be chosen has failed before."""
     sets = batch["observation.instances"]
     failed = choosable(sets) & (torch.arange(sets.shape[1]) % 2 == 0)
@@ -127,13 +125,13 @@ def test_the_labels_of_training_are_those_of_the_episodes(dataset):
 
 
 @BOTH
-def test_training_tells_each_episode_s_label(dataset, kind):
+def test_training_uses_each_episode_s_label(dataset, kind):
     policy = perturbed(make_policy(dataset, **kind)).eval()
     batch = frames(dataset, range(0, len(dataset), 11))
-    told = torch.stack([dataset[i]["preference"] for i in range(0, len(dataset), 11)])
-    assert len(told.unique()) == 2
+    labels = torch.stack([dataset[i]["preference"] for i in range(0, len(dataset), 11)])
+    assert len(labels.unique()) == 2
     sets = batch["observation.instances"]
-    scores = policy.network(sets, torch.zeros(sets.shape[:2], dtype=torch.bool), told).scores
+    scores = policy.network(sets, torch.zeros(sets.shape[:2], dtype=torch.bool), labels).scores
     loss, _ = policy(batch)
     torch.testing.assert_close(loss, F.cross_entropy(scores, chosen_rows(sets, batch["action"])))
     policy.labels = policy.labels.flip(0)
@@ -157,7 +155,7 @@ def test_the_paper_s_network_sees_24_numbers():
         assert not torch.equal(before, after)
 
 
-def test_a_label_is_a_one_hot_and_a_stranger_s_is_none():
+def test_a_label_is_a_one_hot_and_other_preferences_have_zeros():
     labels = torch.arange(len(TWELVE))
     assert torch.equal(one_hot(labels), torch.eye(len(TWELVE)))
     assert not one_hot(torch.tensor([len(TWELVE), 10_000])).any()
@@ -209,25 +207,25 @@ def test_scores_depend_neither_on_row_order_nor_on_padding_nor_on_the_batch(kind
 @pytest.mark.parametrize("decision", [0, 3])
 def test_what_may_not_be_chosen_is_never_chosen(kind, decision):
     batch = observations(range(4), decision)
-    scores = judged(make_policy(**kind), batch)
-    assert torch.equal(scores > NEVER, choosable(batch["observation.instances"]))
+    scores = scores_of(make_policy(**kind), batch)
+    assert torch.equal(scores > EXCLUDED, choosable(batch["observation.instances"]))
 
 
 @BOTH
-def test_what_is_told_changes_the_scores(kind):
+def test_the_label_changes_the_scores(kind):
     policy, batch = perturbed(make_policy(**kind)), observations(range(4))
-    before = judged(policy, batch)
+    before = scores_of(policy, batch)
     other = (batch["observation.preference"] + 1) % len(TWELVE)
-    assert not torch.allclose(judged(policy, batch | {"observation.preference": other}), before)
+    assert not torch.allclose(scores_of(policy, batch | {"observation.preference": other}), before)
 
 
 @BOTH
-def test_the_decision_s_index_counts_only_where_it_is_seen(kind):
+def test_the_decision_s_index_matters_only_where_it_is_an_input(kind):
     policy, batch = perturbed(make_policy(**kind)), observations(range(4))
-    before = judged(policy, batch)
+    before = scores_of(policy, batch)
     sets = batch["observation.instances"].clone()
     sets[..., DECISION] += 5 * is_real(sets)
-    after = judged(policy, batch | {"observation.instances": sets})
+    after = scores_of(policy, batch | {"observation.instances": sets})
     assert torch.allclose(before, after) == (not policy.config.time)
 
 
@@ -236,7 +234,7 @@ def test_the_decision_s_index_counts_only_where_it_is_seen(kind):
     is_node=st.lists(st.booleans(), min_size=2, max_size=8).filter(lambda nodes: sum(nodes) > 1),
     seed=st.integers(0, 1000),
 )
-def test_every_node_looks_at_every_node_and_at_nothing_else(is_node, seed):
+def test_every_node_attends_to_every_node_and_to_nothing_else(is_node, seed):
     torch.manual_seed(seed)
     layer = GraphAttention(GNNConfig(device="cpu", dim=8))
     is_node, nodes = torch.tensor([is_node]), torch.randn(1, len(is_node), 8, requires_grad=True)
@@ -247,7 +245,7 @@ def test_every_node_looks_at_every_node_and_at_nothing_else(is_node, seed):
         assert torch.equal(gradient[0].any(dim=1), is_node[0])
 
 
-def test_what_was_chosen_in_vain_is_marked_until_the_next_episode():
+def test_failed_choices_are_marked_until_the_next_episode():
     policy, batch = make_policy(**TUNED), observations(range(4))
     seen, score_rows = [], policy.score_rows
 
@@ -290,12 +288,12 @@ def test_preferences_without_an_input_are_refused_in_training(dataset, monkeypat
 
     read = modeling_gnn.DemonstrationStore.read
 
-    def of_strangers(*arguments, **keywords):
+    def with_other_preferences(*arguments, **keywords):
         demonstrations = read(*arguments, **keywords)
         demonstrations.preference = demonstrations.preference + len(TWELVE)
         return demonstrations
 
-    monkeypatch.setattr(modeling_gnn.DemonstrationStore, "read", of_strangers)
+    monkeypatch.setattr(modeling_gnn.DemonstrationStore, "read", with_other_preferences)
     with pytest.raises(ValueError, match="none of the 12"):
         make_policy(dataset)
 

@@ -29,8 +29,8 @@ def make_rule(rule, env_config):
     )
 
 
-def play(rule, split, sessions, track="standard"):
-    """The episodes of a rule on some sessions, played as one batch."""
+def roll_out(rule, split, sessions, track="standard"):
+    """The episodes of a rule on some sessions, rolled out as one batch."""
     config = KitchenPrefsEnv(task=split, track=track)
     batch = config.create_envs(len(sessions))["kitchen_prefs"][0]
     policy = make_rule(rule, config)
@@ -50,13 +50,13 @@ def mean(metric, episodes):
 
 @pytest.mark.parametrize("split", ["seen", "unseen_counts", "many_preferences"])
 def test_the_expert_is_perfect(split):
-    episodes = play("expert", split, range(0, 70, 5), track="privileged")
+    episodes = roll_out("expert", split, range(0, 70, 5), track="privileged")
     assert mean(packing_efficiency, episodes) == mean(edit_similarity, episodes) == 1
 
 
 def test_the_order_of_the_rules_on_held_out_preferences():
     scores = {
-        rule: mean(score, play(rule, "unseen_preferences", range(0, 100, 7)))
+        rule: mean(score, roll_out(rule, "unseen_preferences", range(0, 100, 7)))
         for rule in ("random", "majority", "nearest", "symbolic")
     }
     assert scores["random"] < scores["majority"] < scores["nearest"] < scores["symbolic"]
@@ -82,8 +82,8 @@ def test_nearest_finds_a_training_preference():
 
 
 def test_a_rule_does_not_depend_on_the_batch():
-    together = play("random", "seen", range(3))
-    alone = [play("random", "seen", [i])[0] for i in range(3)]
+    together = roll_out("random", "seen", range(3))
+    alone = [roll_out("random", "seen", [i])[0] for i in range(3)]
     assert [episode.decisions for episode in together] == [episode.decisions for episode in alone]
 
 
@@ -103,6 +103,7 @@ def evaluate_as_lerobot_does(rule, batch_size):
     }
 
 
+@pytest.mark.lerobot
 @pytest.mark.parametrize("rule", ["random", "symbolic"])
 def test_lerobot_eval_finds_the_same_for_each_session_at_any_batch_size(rule):
     one, seven, sixteen = (evaluate_as_lerobot_does(rule, size) for size in (1, 7, 16))

@@ -1,0 +1,32 @@
+"""Where a dish is: on the counter, or in the top or the bottom rack.
+
+A closed rack is not visible, and a rack that is out is in front of the counter and below its top.
+All functions take NumPy arrays and torch tensors alike, with any number of leading dimensions.
+"""
+
+from typing import Any
+
+from kitchen_prefs.instances import IS_OBJECT, POSITION
+from kitchen_prefs.simulation.layout import COUNTER_HEIGHT, RACK_CLOSED, SINK_CENTRE, SINK_SIZE
+
+_, Y, Z = range(POSITION.start, POSITION.stop)
+
+# Each bound leaves 10 cm or more on both sides, ten standard deviations of perception's errors.
+COUNTER_LEVEL = COUNTER_HEIGHT - 0.1  # m; dishes on the counter are above it
+SINK_FRONT = SINK_CENTRE[1] - SINK_SIZE[1] / 2  # m; dishes in a rack are in front of it
+TOP_RACK_LEVEL = RACK_CLOSED["top"][2]  # m; the floor of the top rack
+
+
+def in_rack(rows: Any) -> Any:
+    """Which dishes or places, rows (..., D), are in a rack that is out, (...) bool."""
+    return (rows[..., Z] < COUNTER_LEVEL) & (rows[..., Y] < SINK_FRONT)
+
+
+def in_top_rack(rows: Any) -> Any:
+    """Which of the rows in a rack, (..., D), are in the top one, (...) bool."""
+    return rows[..., Z] > TOP_RACK_LEVEL
+
+
+def on_counter(rows: Any) -> Any:
+    """Which dishes, rows (..., D), are on the counter, (...) bool."""
+    return (rows[..., IS_OBJECT] > 0) & ~in_rack(rows)
