@@ -7,6 +7,8 @@ from pathlib import Path
 
 import pytest
 
+pytestmark = pytest.mark.xdist_group("wheel")  # one fixture of the module serves all
+
 ROOT = Path(__file__).parents[1]
 PACKAGES = {
     "kitchen_prefs",

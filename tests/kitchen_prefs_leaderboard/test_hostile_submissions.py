@@ -34,6 +34,8 @@ from kitchen_prefs_leaderboard.submission_reading import (
 )
 from kitchen_prefs_leaderboard.verification import read_verifications
 
+pytestmark = pytest.mark.xdist_group("hostile_submissions")  # one fixture of the module serves all
+
 SEEN = ACTIONS["seen"]
 # Well-formed: the reader has nothing to say against it, only the kitchen has.
 EPISODES = {

@@ -25,6 +25,7 @@ HTML_NAME = "<img src=x onerror=document.title='run'></script><b>"
 PHONE = {"width": 390, "height": 844}
 
 pytestmark = [
+    pytest.mark.xdist_group("page"),
     pytest.mark.browser,
     pytest.mark.slow,
     pytest.mark.skipif(not CHROMIUM.exists(), reason="needs Debian's chromium"),

@@ -25,6 +25,8 @@ from kitchen_prefs.envs.demonstrations import demonstrate
 from kitchen_prefs.simulation.sessions import make_session
 from kitchen_prefs.splits import DATA_VERSION, SPLITS
 
+pytestmark = pytest.mark.xdist_group("loading")  # one fixture of the module serves all
+
 SMALL = "dishwasher-train-p2-d2-v1"
 LARGE = "dishwasher-train-p7-d9-v1"  # takes a second or two to make
 

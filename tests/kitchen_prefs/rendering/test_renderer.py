@@ -9,6 +9,8 @@ from kitchen_prefs.rendering.renderer import Renderer
 from kitchen_prefs.rendering.state import SceneState
 from kitchen_prefs.simulation.layout import COUNTER_HEIGHT, SINK_POSITION
 
+pytestmark = pytest.mark.xdist_group("renderer")  # one fixture of the module serves all
+
 UPRIGHT = np.array([1.0, 0.0, 0.0, 0.0])
 
 

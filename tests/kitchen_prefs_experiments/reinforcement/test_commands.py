@@ -33,6 +33,8 @@ from kitchen_prefs_experiments.reinforcement.row_actions import RowActions
 from kitchen_prefs_experiments.reinforcement.trainer import make_policy
 from lerobot_policy_kitchen_prefs.ttp import TTPConfig
 
+pytestmark = pytest.mark.xdist_group("reinforcement")  # one fixture of the module serves all
+
 # A small network that plays 32 decisions between two updates.
 TINY = (
     "--policy.dim=8",

@@ -12,6 +12,8 @@ from lerobot_policy_kitchen_prefs.common import denoising
 from lerobot_policy_kitchen_prefs.common.denoising import Denoiser
 from lerobot_policy_kitchen_prefs.common.dish_locations import in_rack
 
+pytestmark = pytest.mark.xdist_group("denoising")  # one fixture of the module serves all
+
 SEEDS = st.integers(0, 10_000)
 
 
