@@ -206,7 +206,7 @@ def push(
 ) -> None:
     """Propose a submission to a leaderboard on the Hugging Face hub, as a pull request.
 
-    It is read as `score` reads it, but not replayed: whoever takes it scores it in any case.
+    It is read as `score` reads it, but not replayed: whoever merges it scores it in any case.
     Log in with `hf auth login`, or put a token into HF_TOKEN.
 
     For example:

@@ -37,7 +37,7 @@ Which policy loads a dishwasher as this user likes it, after one demonstration?
 def push_submission(folder: Path, repo_id: str, name: str) -> str:
     """Propose a submission to a leaderboard by a pull request.
 
-    It is read as a scorer reads it, but not replayed: whoever takes it scores it in any case.
+    It is read as a scorer reads it, but not replayed: whoever merges it scores it in any case.
 
     Args:
         folder: The submission.
