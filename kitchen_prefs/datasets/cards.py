@@ -1,8 +1,9 @@
-"""The card of a data set: what a frame looks like, what the data is for, and what it is not."""
+"""The card of a data set: its format, its intended use and its limits."""
 
 import io
 from importlib.resources import files
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pyarrow as pa
@@ -16,13 +17,26 @@ from kitchen_prefs.preferences import TWELVE
 from kitchen_prefs.splits import DATA_VERSION, SPLITS, TEST_SPLITS
 
 
-def card(content: Content, manifest: dict, root: Path) -> str:
+def card_facts(manifest: dict, root: Path) -> dict[str, Any]:
+    """What a card says of its data set that cannot be known without it.
+
+    Args:
+        manifest: What the data set says about itself.
+        root: Its folder, whose files are measured.
+
+    Returns:
+        Fingerprint, numbers of episodes and frames, and the bytes that a frame takes on disk.
+    """
+    of_manifest = {key: manifest[key] for key in ("fingerprint", "episodes", "frames")}
+    return of_manifest | _bytes_a_frame(root)
+
+
+def card(content: Content, facts: dict[str, Any]) -> str:
     """Write the card of a data set.
 
     Args:
         content: What it holds.
-        manifest: What it says about itself.
-        root: Its folder, whose files are measured.
+        facts: As from `card_facts`.
 
     Returns:
         The card in Markdown, with the header that the Hugging Face hub reads.
@@ -33,12 +47,9 @@ def card(content: Content, manifest: dict, root: Path) -> str:
         purpose=content.purpose,
         version=DATA_VERSION,
         fps=FPS,
-        fingerprint=manifest["fingerprint"],
-        episodes=manifest["episodes"],
-        frames=manifest["frames"],
+        **facts,
         preferences=_preferences(content),
         counts=_counts(content),
-        storage=_storage(root),
         capacity=instances.CAPACITY,
         features=_features(),
         state=_numbered(STATE),
@@ -64,18 +75,16 @@ def _counts(content: Content) -> str:
     return ", ".join(map(str, sorted(counts)))
 
 
-def _storage(root: Path) -> str:
-    """What a frame costs on disk, and what the padding adds to it."""
+def _bytes_a_frame(root: Path) -> dict[str, int]:
+    """The bytes that a frame takes on disk, those of its set, and those without the padding."""
     columns = read_columns(root)
     frames = len(columns["episode_index"])
     paths = list(root.glob("data/*/*.parquet"))
-    data = sum(path.stat().st_size for path in paths) / frames
-    padded = sum(_set_bytes(path) for path in paths) / frames
-    bare = _set_bytes(_without_padding(columns)) / frames
-    return (
-        f"A frame takes {data:.0f} bytes on disk. Its instance set takes {padded:.0f} of them; "
-        f"without the padding it would take {bare:.0f}."
-    )
+    return {
+        "frame_bytes": round(sum(path.stat().st_size for path in paths) / frames),
+        "set_bytes": round(sum(_set_bytes(path) for path in paths) / frames),
+        "unpadded_set_bytes": round(_set_bytes(_without_padding(columns)) / frames),
+    }
 
 
 def _set_bytes(file: Path | io.BytesIO) -> int:
@@ -129,7 +138,7 @@ def _splits() -> str:
 
 
 MEANINGS = {
-    "observation.instances": "what the decision sees, see above",
+    "observation.instances": "the visible instances, see above",
     "observation.environment_state": "a flat summary of it, for policies that cannot read a set",
     "observation.state": "joints, category in hand, decision index",
     "action": "the pose of the chosen row: position (m), quaternion (wxyz)",
@@ -141,6 +150,6 @@ MEANINGS = {
 }
 
 NOISE = """
-The demonstrations are those of an expert who sees exactly and whose picks succeed. The noise of
-this split (extents, poses, failed picks) is the environment's.
+The demonstrations are free of noise: the expert observes exact values and its picks succeed. The
+noise of this split (extents, poses, failed picks) is the environment's.
 """

@@ -1,4 +1,4 @@
-"""`kitchen-prefs datasets`: list, show, make, verify, push; and record, for developers."""
+"""`kitchen-prefs datasets`: list, show, make, verify, push; for developers, record and cards."""
 
 from pathlib import Path
 from typing import Annotated
@@ -105,3 +105,16 @@ def record(
     from kitchen_prefs.datasets.publishing import record_published  # imports LeRobot: seconds
 
     record_published(cards)
+
+
+@app.command("cards")
+def write_cards(
+    cards: Annotated[Path, typer.Argument(help="The folder of the cards.")] = Path("dataset_cards"),
+) -> None:
+    """Write the cards of all published data sets from their recorded facts (for developers).
+
+    Example: kitchen-prefs datasets cards
+    """
+    from kitchen_prefs.datasets import publishing  # imports LeRobot: seconds
+
+    publishing.write_cards(cards)

@@ -29,7 +29,7 @@ from lerobot.utils.constants import DEFAULT_FEATURES
 from lerobot.utils.utils import flatten_dict
 from tqdm import tqdm
 
-from kitchen_prefs.datasets.cards import card
+from kitchen_prefs.datasets.cards import card, card_facts
 from kitchen_prefs.datasets.columns import FEATURES, FPS, ROBOT_TYPE, columns_of
 from kitchen_prefs.datasets.manifest import write_manifest
 from kitchen_prefs.datasets.names import Content
@@ -89,7 +89,7 @@ def write_dataset(content: Content, root: Path, workers: int | None = None) -> N
             file.write_table(table)  # one row group an episode, as LeRobot has it
     _write_meta(root, tasks, stats, rows)
     manifest = write_manifest(content.name, root)
-    (root / "README.md").write_text(card(content, manifest, root))
+    (root / "README.md").write_text(card(content, card_facts(manifest, root)))
 
 
 @contextmanager

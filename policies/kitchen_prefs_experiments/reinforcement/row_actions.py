@@ -62,4 +62,4 @@ class RowActions(gymnasium.Wrapper):
 
         An oracle: no evaluated policy observes which dishes block which placements.
         """
-        return self.env.feasible_rows()
+        return self.env.simulator.feasible_rows()

@@ -90,7 +90,7 @@ def test_the_expert_s_rows_earn_its_rewards_and_pack_everything():
     environment.reset(seed=3)
     earned, done = [], False
     while not done:
-        action = environment.env.expert_action()
+        action = environment.env.simulator.expert_action()
         _, reward, done, truncated, info = environment.step(row_of(environment, action))
         earned.append(reward)
         assert not truncated
@@ -136,7 +136,7 @@ def test_the_mask_is_what_the_kitchen_would_carry_out(seed):
             carried_out = not deepcopy(environment).step(row)[4]["refusal"]
             assert mask[row] == carried_out
             refused += not carried_out
-        environment.step(row_of(environment, environment.env.expert_action()))
+        environment.step(row_of(environment, environment.env.simulator.expert_action()))
     assert refused > 25  # closed racks, the door, blocked placements
 
 
