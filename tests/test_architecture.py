@@ -83,7 +83,7 @@ LEADERBOARD = {
     ),
     "ranking": "scoring submission_format verification",
     "score_formats": "scoring verification kitchen_prefs.metrics",
-    "hub_upload": "scoring submission_reading kitchen_prefs.splits kitchen_prefs.utils",
+    "hub_upload": "scoring kitchen_prefs.splits kitchen_prefs.utils",
     "page": (
         "ranking scoring kitchen_prefs.metrics kitchen_prefs.preferences "
         "kitchen_prefs.simulation kitchen_prefs.splits kitchen_prefs.utils"

@@ -32,8 +32,8 @@ def select_checkpoint(
 
     Args:
         run: The output folder of `lerobot-train` or `kitchen-prefs reinforce`.
-        track: What the environment tells the policy; if not given, what its settings ask for.
-        batch_size: How many sessions are played at once.
+        track: What the policy observes; if not given, the track of its settings.
+        batch_size: How many sessions are rolled out at once.
 
     Raises:
         ValueError: If the run has no checkpoints.

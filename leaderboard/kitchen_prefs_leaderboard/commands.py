@@ -60,7 +60,7 @@ def submit(
     ] = None,
     jobs: Jobs = CORES,
 ) -> None:
-    """Let a policy play the test splits and write what it did as a submission.
+    """Roll a policy out on the test splits and write its actions as a submission.
 
     The episodes are kept in OUT-episodes, so a command that was killed goes on.
     Any other --policy.SETTING=VALUE overrides a setting of the policy.
@@ -71,21 +71,21 @@ def submit(
     """
     make_folder(out.parent, "--out")
     from kitchen_prefs_leaderboard import submission_writing
-    from kitchen_prefs_leaderboard.policy_runs import load_player
+    from kitchen_prefs_leaderboard.policy_runs import load_policy_run
 
     submission_writing.check_replaceable(out)
-    player = load_player(path, policy_type, context.args, track)
+    policy = load_policy_run(path, policy_type, context.args, track)
     submission = submission_writing.describe(
         name=name,
         authors=author,
         link=link,
         track=track,
-        policy=submission_writing.policy_of(player.loaded_policy),
+        policy=submission_writing.policy_of(policy.loaded_policy),
         hardware=hardware,
         training=training or (submission_writing.training_of(path) if path else NOT_SAID),
     )
-    played = player.play(out.with_name(f"{out.name}-episodes"), salt=0, jobs=jobs)
-    submission_writing.write_submission(submission, played, out)
+    episodes = policy.roll_out(out.with_name(f"{out.name}-episodes"), salt=0, jobs=jobs)
+    submission_writing.write_submission(submission, episodes, out)
     typer.echo(f"The submission is {out}. `kitchen-prefs leaderboard score {out}` scores it.")
 
 
@@ -118,47 +118,48 @@ def score(
 def verify(
     context: typer.Context,
     folder: Annotated[Path, typer.Argument(metavar="DIR", help="A submission.")],
-    rerun: Annotated[bool, typer.Option("--rerun", help="Let the policy play again.")] = False,
+    rerun: Annotated[bool, typer.Option("--rerun", help="Roll the policy out again.")] = False,
     path: PolicyPath = None,
     policy_type: PolicyType = None,
     salt: Annotated[
-        int | None, typer.Option(help="Draws the fresh sessions.", min=1, show_default="at random")
+        int | None,
+        typer.Option(help="The seed of the fresh sessions.", min=1, show_default="at random"),
     ] = None,
     verifications: Verifications = KEPT,
     out: Annotated[Path, typer.Option(help="Keeps the episodes.")] = Path("outputs/verify"),
     jobs: Jobs = CORES,
 ) -> None:
-    """Check that a submission's actions lead where it says, and with --rerun who chose them.
+    """Check where a submission's actions lead, and with --rerun which policy chose them.
 
-    A re-run lets the policy play again, on the test splits and on sessions that nobody knew when
-    the submission was made. What it came to is kept; only rows with such a record are ranked.
+    A re-run rolls the policy out again, on the test splits and on fresh sessions, which were not
+    known when the submission was made. Its record is kept; only rows with one are ranked.
 
     For example:
     kitchen-prefs leaderboard verify leaderboard/submissions/ttp_plus --rerun
     --policy.path=policies/checkpoints/ttp_plus
     """
     from kitchen_prefs_leaderboard import score_formats, verification
-    from kitchen_prefs_leaderboard.scoring import read_known, score_submissions
+    from kitchen_prefs_leaderboard.scoring import read_known, replay_submissions
 
     if not rerun:
         if path or policy_type or context.args:
-            raise ValueError("A policy plays again with --rerun only; add it.")
-        score_submissions([folder], jobs)
+            raise ValueError("A policy is rolled out again with --rerun only; add it.")
+        replay_submissions([read_known(folder)], jobs)
         typer.echo(f"All actions of {folder} lead where it says.")
         typer.echo("Who chose them only a re-run tells: add --rerun and the policy.")
         return
     make_folder(out, "--out")
     make_folder(verifications, "--verifications")
-    from kitchen_prefs_leaderboard.policy_runs import load_player
+    from kitchen_prefs_leaderboard.policy_runs import load_policy_run
     from kitchen_prefs_leaderboard.submission_writing import policy_of
 
     submission = read_known(folder)
-    player = load_player(path, policy_type, context.args, submission.track)
-    verification.check_policy(submission, policy_of(player.loaded_policy))
-    (entry,) = score_submissions([folder], jobs)
+    policy = load_policy_run(path, policy_type, context.args, submission.description.track)
+    verification.check_policy(submission.description, policy_of(policy.loaded_policy))
+    (entry,) = replay_submissions([submission], jobs)
     kept = out / entry.digest[:12]
-    salt = salt or verification.fresh_salt(kept)
-    found = verification.run_again(entry, player, salt, kept, jobs)
+    salt = salt or verification.session_seed(kept)
+    found = verification.run_again(entry, policy, salt, kept, jobs)
     file = verification.write_verification(found, verifications)
     console.print(score_formats.to_comparison(found))
     typer.echo(f"{score_formats.to_verdict(found)}\nThe record is {file}.")
@@ -205,8 +206,8 @@ def push(
 ) -> None:
     """Propose a submission to a leaderboard on the Hugging Face hub, as a pull request.
 
-    It is read as `score` reads it, but not replayed: whoever takes it scores it in any case.
-    The hub knows you by `hf auth login`, or by a token in HF_TOKEN.
+    It is read as `score` reads it, but not replayed: whoever merges it scores it in any case.
+    Log in with `hf auth login`, or put a token into HF_TOKEN.
 
     For example:
     kitchen-prefs leaderboard push outputs/my_ttp --repo-id=OWNER/NAME
@@ -224,7 +225,7 @@ def push_page(
 ) -> None:
     """Show the page as a static Space of the Hugging Face hub.
 
-    The hub knows you by `hf auth login`, or by a token in HF_TOKEN.
+    Log in with `hf auth login`, or put a token into HF_TOKEN.
 
     For example:
     kitchen-prefs leaderboard push-page outputs/leaderboard.html --repo-id=OWNER/SPACE

@@ -15,7 +15,6 @@ from huggingface_hub import HfApi
 from kitchen_prefs.splits import TEST_SPLITS
 from kitchen_prefs.utils.hub import check_repo_id, commit, hub_errors
 from kitchen_prefs_leaderboard.scoring import read_known
-from kitchen_prefs_leaderboard.submission_reading import files_of, read_lines
 
 SAFE_NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]{0,59}")
 
@@ -30,7 +29,7 @@ app_file: index.html
 license: apache-2.0
 ---
 
-Which policy loads a dishwasher as this person likes it, after one demonstration?
+Which policy loads a dishwasher as this user likes it, after one demonstration?
 `kitchen-prefs leaderboard page` wrote the page from replayed submissions.
 """
 
@@ -38,7 +37,7 @@ Which policy loads a dishwasher as this person likes it, after one demonstration
 def push_submission(folder: Path, repo_id: str, name: str) -> str:
     """Propose a submission to a leaderboard by a pull request.
 
-    It is read as a scorer reads it, but not replayed: whoever takes it scores it in any case.
+    It is read as a scorer reads it, but not replayed: whoever merges it scores it in any case.
 
     Args:
         folder: The submission.
@@ -60,8 +59,9 @@ def push_submission(folder: Path, repo_id: str, name: str) -> str:
         )
     submission = read_known(folder)
     for split in TEST_SPLITS:
-        read_lines(folder, split)
-    files = {f"{name}/{file}": content for file, content in files_of(folder)}
+        submission.lines(split)  # raises if they are malformed
+    files = {f"{name}/{file}": content for file, content in submission.contents.items()}
+    about = submission.description
     with hub_errors(repo_id):
         HfApi().repo_info(repo_id, repo_type="dataset")  # fails at once where `commit` tries again
         proposed = commit(
@@ -69,7 +69,7 @@ def push_submission(folder: Path, repo_id: str, name: str) -> str:
             "dataset",
             files,
             f"Submission {name}",
-            f"{submission.name}, {submission.track} track, by {', '.join(submission.authors)}",
+            f"{about.name}, {about.track} track, by {', '.join(about.authors)}",
             create_pr=True,
         )
     if proposed.pr_url is None:  # nothing in it differed

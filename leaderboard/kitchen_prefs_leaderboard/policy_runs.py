@@ -1,4 +1,4 @@
-"""A LeRobot policy plays the test splits, on several cores."""
+"""Rolls a LeRobot policy out on the test splits, on several cores."""
 
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
@@ -16,23 +16,23 @@ from kitchen_prefs_leaderboard.submission_format import TRACKS
 
 
 @dataclass(frozen=True)
-class Player:
-    """A policy that plays.
+class PolicyRun:
+    """A policy that can be rolled out by several processes.
 
     Attributes:
-        actor: The policy.
-        named: What `kitchen-prefs evaluate` is told of it.
+        loaded_policy: The policy.
+        options: The options of `kitchen-prefs evaluate` that load it.
     """
 
     loaded_policy: LoadedPolicy
-    named: tuple[str, ...]
+    options: tuple[str, ...]
 
-    def play(self, folder: Path, salt: int, jobs: int) -> dict[str, list[Episode]]:
-        """Play the test splits; what is played already is not played again.
+    def roll_out(self, folder: Path, salt: int, jobs: int) -> dict[str, list[Episode]]:
+        """Roll out on the test splits; episodes that are in the folder are kept.
 
         Args:
             folder: Keeps the episodes.
-            salt: 0 for the published sessions, else fresh ones.
+            salt: The session seed; 0 for the published sessions.
             jobs: How many processes share the splits.
 
         Returns:
@@ -43,30 +43,30 @@ class Player:
             OSError: If an evaluation fails; the message names its log.
         """
         folder.mkdir(parents=True, exist_ok=True)
-        self._check_played(folder)
+        self._check_episodes(folder)
 
         def evaluate(splits: Sequence[str]) -> None:
             where = [f"--split={','.join(splits)}", f"--out={folder}", f"--salt={salt}"]
-            arguments = ["evaluate", *self.named, *where]
-            run_module("kitchen_prefs.cli", arguments, folder / f"{splits[0]}.log", "Playing")
+            arguments = ["evaluate", *self.options, *where]
+            run_module("kitchen_prefs.cli", arguments, folder / f"{splits[0]}.log", "Rolling out")
 
         with ThreadPoolExecutor(jobs) as pool:
             list(pool.map(evaluate, shares(jobs)))
-        self._check_played(folder)
+        self._check_episodes(folder)
         return {
             split: sorted(read_episodes(folder / f"{split}.jsonl"), key=lambda one: one.session)
             for split in TEST_SPLITS
         }
 
-    def _check_played(self, folder: Path) -> None:
-        way_out = "delete that folder, or give another --out."
+    def _check_episodes(self, folder: Path) -> None:
+        advice = "delete that folder, or give another --out."
         for header in folder.glob("*.header.json"):
-            if read_header(header, way_out)["fingerprint"] != self.loaded_policy.fingerprint:
-                raise ValueError(f"{folder} holds episodes of another policy; {way_out}")
+            if read_header(header, advice)["fingerprint"] != self.loaded_policy.fingerprint:
+                raise ValueError(f"{folder} holds episodes of another policy; {advice}")
 
 
 def shares(jobs: int) -> list[list[str]]:
-    """The test splits, shared out so that each process plays about as many sessions.
+    """The test splits, shared so that each process has about as many sessions.
 
     A process for each split would load LeRobot six times, which takes longer than some splits.
     """
@@ -77,23 +77,23 @@ def shares(jobs: int) -> list[list[str]]:
     return shared
 
 
-def load_player(
+def load_policy_run(
     path: str | None, policy_type: str | None, settings: Sequence[str], track: str
-) -> Player:
+) -> PolicyRun:
     """Load a policy for a track of the leaderboard.
 
     Args:
         path: A checkpoint, see `load_policy`.
         policy_type: The type of a policy that needs no training.
         settings: Settings of the policy to override, as in `--policy.rule=symbolic`.
-        track: What the policy is told; on the open track it is told what it asks for.
+        track: What the policy observes; on the open track, the track of its own settings.
 
     Raises:
         ValueError: If there is no such track, or if it cannot be loaded, see `load_policy`.
     """
     if track not in TRACKS:
         raise ValueError(f"There is no track {track!r}. {suggest(track, TRACKS)}")
-    told = None if track == "open" else track
-    loaded_policy = load_policy(path, policy_type, settings_of(settings), track=told)
+    observed = None if track == "open" else track
+    loaded_policy = load_policy(path, policy_type, settings_of(settings), track=observed)
     policy = f"--policy.path={path}" if path else f"--policy.type={policy_type}"
-    return Player(loaded_policy, (policy, *settings, f"--track={loaded_policy.track}"))
+    return PolicyRun(loaded_policy, (policy, *settings, f"--track={loaded_policy.track}"))

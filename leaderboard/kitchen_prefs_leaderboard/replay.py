@@ -1,7 +1,6 @@
-"""Replays: the kitchen plays a submission's actions again, and says what came of them."""
+"""Replays a submission's actions in the simulator."""
 
 from collections.abc import Sequence
-from pathlib import Path
 
 from kitchen_prefs import instances
 from kitchen_prefs.envs.episode_simulator import EpisodeSimulator
@@ -9,28 +8,29 @@ from kitchen_prefs.metrics import Episode
 from kitchen_prefs.simulation.counter_layout import POSE_DECIMALS
 from kitchen_prefs.simulation.sessions import make_session
 from kitchen_prefs_leaderboard.submission_format import ACTIONS, FARTHEST, Line
-from kitchen_prefs_leaderboard.submission_reading import read_lines
+from kitchen_prefs_leaderboard.submission_reading import SubmissionFiles
 
 
-def replay_split(folder: Path, split: str) -> list[Episode]:
-    """Play a submission's episodes of a split again.
+def replay_split(submission: SubmissionFiles, split: str) -> list[Episode]:
+    """Replay a submission's episodes of a split.
 
     Raises:
         ValueError: If the file is not what the format says, or if an episode does not begin or end
             as it says.
     """
+    file = submission.folder / ACTIONS[split]
     return [
-        replay(split, line, f"{folder / ACTIONS[split]}, line {number}")
-        for number, line in enumerate(read_lines(folder, split), start=1)
+        replay(split, line, f"{file}, line {number}")
+        for number, line in enumerate(submission.lines(split), start=1)
     ]
 
 
 def replay(split: str, line: Line, where: str) -> Episode:
-    """Play one episode again.
+    """Replay one episode.
 
     Args:
         split: The split of the session.
-        line: What is said of the episode.
+        line: The episode, as the submission has it.
         where: Names the line in errors.
 
     Raises:
@@ -54,7 +54,7 @@ def replay(split: str, line: Line, where: str) -> Episode:
 
 
 def write_line(episode: Episode) -> Line:
-    """Say of an episode what a submission says of it.
+    """An episode as a line of a submission.
 
     Actions are rounded. One that would then choose another instance, or that lies too far away,
     becomes the pose that it chose.

@@ -1,6 +1,5 @@
 """What a submission is worth: every metric, from replays alone."""
 
-import hashlib
 from collections.abc import Iterable, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
@@ -24,7 +23,7 @@ from kitchen_prefs.metrics import (
 from kitchen_prefs.splits import DATA_VERSION, TEST_SPLITS
 from kitchen_prefs_leaderboard.replay import replay_split
 from kitchen_prefs_leaderboard.submission_format import Submission
-from kitchen_prefs_leaderboard.submission_reading import files_of, read_description, read_lines
+from kitchen_prefs_leaderboard.submission_reading import SubmissionFiles, read_submission
 
 MEAN = "mean"  # stands beside the splits' names: each split counts the same
 DIGITS = 4  # the bootstrap tells no more than three; a fourth keeps rounding out of them
@@ -92,42 +91,38 @@ def score_submissions(folders: Sequence[Path], jobs: int) -> list[Entry]:
         ValueError: If one is not what the format says, or does not lead where it says.
         OSError: If a process is killed.
     """
-    submissions = [read_known(folder) for folder in folders]
-    work = list(product(folders, TEST_SPLITS))
-    for folder, split in work:
-        read_lines(folder, split)  # takes no time, and nothing is replayed if one is malformed
-    episodes = _replay(work, jobs)
+    return replay_submissions([read_known(folder) for folder in folders], jobs)
+
+
+def replay_submissions(submissions: Sequence[SubmissionFiles], jobs: int) -> list[Entry]:
+    """Replay submissions that were read, see `score_submissions`."""
+    work = list(product(range(len(submissions)), TEST_SPLITS))
+    for i, split in work:
+        submissions[i].lines(split)  # quick, and nothing is replayed if one is malformed
+    episodes = _replay(submissions, work, jobs)
     return [
-        Entry(submission, digest_of(folder), {s: episodes[folder, s] for s in TEST_SPLITS})
-        for folder, submission in zip(folders, submissions, strict=True)
+        Entry(submission.description, submission.digest, {s: episodes[i, s] for s in TEST_SPLITS})
+        for i, submission in enumerate(submissions)
     ]
 
 
-def read_known(folder: Path) -> Submission:
-    """Read who acted, on data that this version of the benchmark has.
+def read_known(folder: Path) -> SubmissionFiles:
+    """Read a submission on data that this version of the benchmark has.
 
     Raises:
         ValueError: If it is no submission, or of another version of the data.
     """
-    submission = read_description(folder)
-    if submission.data_version != DATA_VERSION:
+    submission = read_submission(folder)
+    description = submission.description
+    if description.data_version != DATA_VERSION:
         raise ValueError(
-            f"{folder} is of data version {submission.data_version}; this version of "
+            f"{folder} is of data version {description.data_version}; this version of "
             f"kitchen_prefs replays version {DATA_VERSION}."
         )
-    for name, fingerprint in submission.fingerprints.items():
+    for name, fingerprint in description.fingerprints.items():
         if published_fingerprint(name) != fingerprint:
             raise ValueError(f"{folder} was made with another data set {name!r}.")
     return submission
-
-
-def digest_of(folder: Path) -> str:
-    """A hash of all of a submission's files."""
-    sha = hashlib.sha256()
-    for name, content in files_of(folder):
-        sha.update(f"{name} {len(content)}\n".encode())
-        sha.update(content)
-    return sha.hexdigest()
 
 
 def difference(
@@ -150,11 +145,14 @@ def rounded(interval: Interval) -> dict[str, float]:
     return {name: round(value, DIGITS) for name, value in asdict(interval).items()}
 
 
-def _replay(work: Sequence[tuple[Path, str]], jobs: int) -> dict[tuple[Path, str], list[Episode]]:
+def _replay(
+    submissions: Sequence[SubmissionFiles], work: Sequence[tuple[int, str]], jobs: int
+) -> dict[tuple[int, str], list[Episode]]:
     """Replay splits of submissions; the first that does not lead where it says ends the work."""
     try:
         with ProcessPoolExecutor(jobs) as pool:
-            replays = pool.map(replay_split, *zip(*work, strict=True))
+            read, splits = [submissions[i] for i, _ in work], [split for _, split in work]
+            replays = pool.map(replay_split, read, splits)
             bar = tqdm(replays, "Replaying", len(work), unit="split", leave=False, disable=None)
             return dict(zip(work, bar, strict=True))
     except BrokenProcessPool as error:

@@ -1,14 +1,16 @@
-"""Reading a submission as what it is: files from a stranger.
+"""Reads a submission, whose files are not trusted.
 
-Nothing is followed (no links), nothing is read beyond its bound, nothing is executed, and what is
-wrong is said in one sentence.
+No link is followed, nothing is read beyond its bound, nothing is executed, and an error is one
+sentence.
 """
 
 import errno
+import hashlib
 import os
 import stat
 from bz2 import BZ2Decompressor
-from collections.abc import Iterator
+from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 
 from pydantic import BaseModel, ValidationError
@@ -32,24 +34,72 @@ MOST_LINES = 4 * 1024 * 1024
 MOST_LINE = 64 * 1024
 
 
-def read_description(folder: Path) -> Submission:
-    """Read who acted.
+@dataclass(frozen=True)
+class SubmissionFiles:
+    """A submission as it was read from disk, once.
+
+    It holds the files' bytes, some 600,000 of an honest submission, and parses the lines of a split
+    when they are asked for: parsed, they need fifty times the memory.
+
+    Attributes:
+        folder: Where it was read.
+        description: The submission's description, parsed.
+        contents: Each file's bytes, by its name.
+    """
+
+    folder: Path
+    description: Submission
+    contents: Mapping[str, bytes]
+
+    def lines(self, split: str) -> list[Line]:
+        """Parse the episodes of a split: every session once and in order.
+
+        Raises:
+            ValueError: If the file is too large, or holds anything else.
+        """
+        name = ACTIONS[split]
+        return parse_lines(self.contents[name], split, self.folder / name)
+
+    @property
+    def digest(self) -> str:
+        """A hash of all files."""
+        sha = hashlib.sha256()
+        for name, content in self.contents.items():
+            sha.update(f"{name} {len(content)}\n".encode())
+            sha.update(content)
+        return sha.hexdigest()
+
+
+def read_submission(folder: Path) -> SubmissionFiles:
+    """Read a submission's files, each once and within its bound; the description is parsed first.
 
     Raises:
-        ValueError: If `submission.json` is not there or is no `Submission`.
+        ValueError: If a file is missing or too large, or if `submission.json` is no `Submission`.
     """
-    file = folder / DESCRIPTION
-    return _parse(Submission, _bytes_of(file, MOST_DESCRIPTION), str(file))
+    content = read_bytes(folder / DESCRIPTION, MOST_DESCRIPTION)
+    description = parse_description(content, folder / DESCRIPTION)
+    contents = {DESCRIPTION: content}
+    for name in ACTIONS.values():
+        contents[name] = read_bytes(folder / name, MOST_COMPRESSED)
+    return SubmissionFiles(folder, description, contents)
 
 
-def read_lines(folder: Path, split: str) -> list[Line]:
-    """Read what was done on a split, every session once and in order.
+def parse_description(content: bytes, file: Path) -> Submission:
+    """Parse `submission.json`.
 
     Raises:
-        ValueError: If the file is not there, is too large, or holds anything else.
+        ValueError: If it is no `Submission`; the message names the file.
     """
-    file = folder / ACTIONS[split]
-    text = _decompress(_bytes_of(file, MOST_COMPRESSED), file)
+    return _parse(Submission, content, str(file))
+
+
+def parse_lines(content: bytes, split: str, file: Path) -> list[Line]:
+    """Decompress and parse the episodes of a split: every session once and in order.
+
+    Raises:
+        ValueError: If they are too large, or anything else; the message names the file.
+    """
+    text = _decompress(content, file)
     lines = [
         _line(line, f"{file}, line {number}")
         for number, line in enumerate(text.splitlines(), start=1)
@@ -66,19 +116,12 @@ def read_lines(folder: Path, split: str) -> list[Line]:
     return lines
 
 
-def files_of(folder: Path) -> Iterator[tuple[str, bytes]]:
-    """The name and the content of each of a submission's files.
+def read_bytes(file: Path, most: int) -> bytes:
+    """Read a regular file of at most so many bytes.
 
     Raises:
-        ValueError: If one is missing or too large.
+        ValueError: If it is missing, larger, or not a regular file.
     """
-    yield DESCRIPTION, _bytes_of(folder / DESCRIPTION, MOST_DESCRIPTION)
-    for name in ACTIONS.values():
-        yield name, _bytes_of(folder / name, MOST_COMPRESSED)
-
-
-def _bytes_of(file: Path, most: int) -> bytes:
-    """A regular file's content, of at most so many bytes."""
     try:
         with open(file, "rb", opener=_open) as opened:
             if not stat.S_ISREG(os.fstat(opened.fileno()).st_mode):

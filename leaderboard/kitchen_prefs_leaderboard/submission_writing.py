@@ -1,4 +1,4 @@
-"""Making a submission of a LeRobot policy: it plays the test splits, and its actions are kept."""
+"""Writes a submission from the episodes of a LeRobot policy."""
 
 import bz2
 import json
@@ -42,18 +42,18 @@ def check_replaceable(folder: Path) -> None:
 
 
 def write_submission(
-    submission: Submission, played: Mapping[str, Sequence[Episode]], folder: Path
+    submission: Submission, rolled_out: Mapping[str, Sequence[Episode]], folder: Path
 ) -> None:
     """Write a submission, whole or not at all.
 
     Args:
         submission: Who acted.
-        played: The episodes of each test split, in the order of the sessions.
+        rolled_out: The episodes of each test split, in the order of the sessions.
         folder: The submission's; an older one there is replaced.
     """
     check_replaceable(folder)
     with atomic_folder(folder) as beside:
-        for split, episodes in tqdm(played.items(), "Writing", unit="split", leave=False):
+        for split, episodes in tqdm(rolled_out.items(), "Writing", unit="split", leave=False):
             lines = to_jsonl([write_line(episode) for episode in episodes])
             # A fifth smaller than gzip, and without a time in it: the same actions, the same bytes.
             (beside / ACTIONS[split]).write_bytes(bz2.compress(lines))
@@ -61,7 +61,7 @@ def write_submission(
 
 
 def describe(**about: Any) -> Submission:
-    """Say who acted, with the versions that are installed here.
+    """Describe a submission, with the versions that are installed here.
 
     Args:
         about: The fields of a `Submission` that only its author knows.
@@ -86,7 +86,7 @@ def describe(**about: Any) -> Submission:
 
 
 def policy_of(loaded_policy: LoadedPolicy) -> Policy:
-    """What a submission says of a LeRobot policy."""
+    """A LeRobot policy as a submission describes it."""
     policy = loaded_policy.policy
     return Policy(
         type=policy.config.type,

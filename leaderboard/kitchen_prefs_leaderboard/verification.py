@@ -1,8 +1,8 @@
 """Re-runs: the one thing that a replay cannot prove is who chose the actions.
 
-A checkpoint that is submitted is loaded and plays again, on the test splits and on fresh sessions
-that nobody knew when the submission was made. What came of it is kept by whoever runs the
-leaderboard, never in a submission: VERIFICATIONS/<digest of the submission>.json.
+The submitted checkpoint is rolled out again, on the test splits and on fresh sessions, which were
+not known when the submission was made. The record is kept by whoever runs the leaderboard, never in
+a submission: VERIFICATIONS/<digest of the submission>.json.
 """
 
 import secrets
@@ -27,7 +27,7 @@ from kitchen_prefs_leaderboard.submission_format import (
 )
 
 if TYPE_CHECKING:
-    from kitchen_prefs_leaderboard.policy_runs import Player  # brings torch
+    from kitchen_prefs_leaderboard.policy_runs import PolicyRun  # brings torch
 
 
 class Means(Strict):
@@ -39,12 +39,12 @@ class Means(Strict):
 
 
 class Verification(Strict):
-    """What a re-run of a submission came to.
+    """The result of a re-run.
 
     Attributes:
         digest: The hash of the submission's files.
         packages: The versions of the programs that ran it.
-        salt: Which drawing of fresh sessions it played, too.
+        salt: The session seed of the fresh sessions.
         same: The share of the submission's episodes in which it decided the same.
         replayed: Score of the submission's actions.
         rerun: Score of the policy on the same sessions.
@@ -89,7 +89,7 @@ def read_verifications(folder: Path) -> dict[str, Verification]:
 
 
 def write_verification(verification: Verification, folder: Path) -> Path:
-    """Keep what a re-run came to."""
+    """Keep the record of a re-run."""
     folder.mkdir(parents=True, exist_ok=True)
     file = folder / f"{verification.digest}.json"
     write_json(file, verification.model_dump())
@@ -100,8 +100,8 @@ def check_policy(submission: Submission, policy: Policy) -> None:
     """Make sure that a policy is the one that a submission names.
 
     Args:
-        submission: Who is said to have acted.
-        policy: What is to run again.
+        submission: The description of the submission.
+        policy: The policy that is to be rolled out.
 
     Raises:
         ValueError: If it is another one, or if the submission names none.
@@ -115,38 +115,40 @@ def check_policy(submission: Submission, policy: Policy) -> None:
         )
 
 
-def fresh_salt(folder: Path) -> int:
-    """The salt of a re-run that was begun in a folder, or else a new one."""
+def session_seed(folder: Path) -> int:
+    """The session seed (salt) of a re-run that was started in a folder, or else a new one."""
     begun = sorted(folder.glob("salt-[1-9]*"))
     if begun:
         return int(begun[0].name.removeprefix("salt-"))
     return secrets.randbelow(FRESH_SALTS - 1) + 1
 
 
-def run_again(entry: Entry, player: "Player", salt: int, folder: Path, jobs: int) -> Verification:
-    """Let a policy play the published and fresh sessions, and hold both against a submission.
+def run_again(
+    entry: Entry, policy: "PolicyRun", salt: int, folder: Path, jobs: int
+) -> Verification:
+    """Roll a policy out on the published and on fresh sessions, and compare with a submission.
 
     Args:
         entry: The submission, replayed.
-        player: The policy that is said to have chosen its actions.
-        salt: Draws the fresh sessions.
-        folder: Keeps the episodes; what is played already is not played again.
+        policy: The policy that the submission names.
+        salt: The session seed of the fresh sessions.
+        folder: Keeps the episodes; those that are there are kept.
         jobs: How many processes share the splits.
 
     Raises:
         OSError: If an evaluation fails; the message names its log.
     """
-    rerun, fresh = (player.play(folder / f"salt-{drawing}", drawing, jobs) for drawing in (0, salt))
-    return judge(entry, rerun, fresh, salt)
+    rerun, fresh = (policy.roll_out(folder / f"salt-{seed}", seed, jobs) for seed in (0, salt))
+    return compare(entry, rerun, fresh, salt)
 
 
-def judge(
+def compare(
     entry: Entry,
     rerun: Mapping[str, Sequence[Episode]],
     fresh: Mapping[str, Sequence[Episode]],
     salt: int,
 ) -> Verification:
-    """Hold a re-run against a submission.
+    """Compare a re-run with a submission.
 
     It confirms the submission if on the same sessions the paired interval of the difference in
     Score holds zero, and if on fresh sessions the policy is not worse by more than both intervals
@@ -156,7 +158,7 @@ def judge(
         entry: The submission, replayed.
         rerun: Its policy's episodes on the same sessions, by split.
         fresh: Its policy's episodes on fresh sessions, by split.
-        salt: Draws the fresh sessions.
+        salt: The session seed of the fresh sessions.
     """
     mine = {(e.split, e.session): e for episodes in entry.episodes.values() for e in episodes}
     pairs = [(mine[e.split, e.session], e) for episodes in rerun.values() for e in episodes]

@@ -20,7 +20,13 @@ from honest import ABOUT, EPISODE
 
 with atheris.instrument_imports(include=["kitchen_prefs_leaderboard"]):
     from kitchen_prefs_leaderboard.submission_format import ACTIONS, DESCRIPTION, Line, Submission
-    from kitchen_prefs_leaderboard.submission_reading import read_description, read_lines
+    from kitchen_prefs_leaderboard.submission_reading import (
+        MOST_COMPRESSED,
+        MOST_DESCRIPTION,
+        parse_description,
+        parse_lines,
+        read_bytes,
+    )
 
 from kitchen_prefs.splits import get_split
 
@@ -84,7 +90,10 @@ def read(folder: Path, content: bytes) -> None:
     file = folder / (DESCRIPTION if described else ACTIONS[SPLIT])
     file.write_bytes(bz2.compress(content, compresslevel=1) if kind == LINES else content)
     try:
-        found = read_description(folder) if described else read_lines(folder, SPLIT)
+        if described:
+            found = parse_description(read_bytes(file, MOST_DESCRIPTION), file)
+        else:
+            found = parse_lines(read_bytes(file, MOST_COMPRESSED), SPLIT, file)
     except ValueError as error:
         check_sentence(str(error), file)
     else:

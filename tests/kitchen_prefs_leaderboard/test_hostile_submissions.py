@@ -27,10 +27,12 @@ from kitchen_prefs_leaderboard.scoring import Entry, read_known, score_submissio
 from kitchen_prefs_leaderboard.submission_format import ACTIONS, DESCRIPTION, Line, Submission
 from kitchen_prefs_leaderboard.submission_reading import (
     MOST_COMPRESSED,
+    MOST_DESCRIPTION,
     MOST_LINE,
     MOST_LINES,
-    read_description,
-    read_lines,
+    parse_description,
+    parse_lines,
+    read_bytes,
 )
 from kitchen_prefs_leaderboard.verification import read_verifications
 
@@ -74,6 +76,16 @@ def folder(tmp_path):
 def shared(tmp_path_factory):
     """A folder whose files are written anew for every example."""
     return write(tmp_path_factory.mktemp("shared") / "stranger")
+
+
+def read_description(folder):
+    file = folder / DESCRIPTION
+    return parse_description(read_bytes(file, MOST_DESCRIPTION), file)
+
+
+def read_lines(folder, split):
+    file = folder / ACTIONS[split]
+    return parse_lines(read_bytes(file, MOST_COMPRESSED), split, file)
 
 
 def check_sentence(sentence, file):
@@ -337,12 +349,11 @@ def greedy(tmp_path_factory):
 READ_ALL = """
 import sys
 from pathlib import Path
-from kitchen_prefs_leaderboard.submission_reading import read_description, read_lines
+from kitchen_prefs_leaderboard.submission_reading import read_submission
 
 for folder in map(Path, sys.argv[1:]):
     try:
-        read_description(folder)
-        read_lines(folder, "seen")
+        read_submission(folder).lines("seen")
     except ValueError as error:
         print(error, file=sys.stderr)
     status = dict(line.split(":", 1) for line in open("/proc/self/status"))
@@ -414,15 +425,15 @@ def test_no_text_leaves_the_pages_data(text):
     assert json.loads(data) == {"name": text} | {text: [text]}
 
 
-def first_lies(folder, split):
+def first_lies(submission, split):
     """Stands in for a replay: the first split does not lead where it says, the others take time."""
-    (folder / f"{split}.replayed").touch()
+    (submission.folder / f"{split}.replayed").touch()
     if split == TEST_SPLITS[0]:
-        raise ValueError(f"{folder} lies.")
+        raise ValueError(f"{submission.folder} lies.")
     time.sleep(0.2)
 
 
-def is_killed(folder, split):
+def is_killed(submission, split):
     """Stands in for a replay whose process the system ends."""
     os.kill(os.getpid(), signal.SIGKILL)
 

@@ -7,7 +7,7 @@ import pytest
 from kitchen_prefs_leaderboard.ranking import rank
 from kitchen_prefs_leaderboard.scoring import MEAN, difference, score_submissions
 from kitchen_prefs_leaderboard.submission_writing import write_submission
-from kitchen_prefs_leaderboard.verification import judge
+from kitchen_prefs_leaderboard.verification import compare
 
 ALL = range(6)  # all sessions of a split that was cut short
 
@@ -18,7 +18,7 @@ def shown():
 
     def show(entries, again=None):
         verified = {
-            entry.digest: judge(entry, entry.episodes, entry.episodes, 1)
+            entry.digest: compare(entry, entry.episodes, entry.episodes, 1)
             for entry in (entries if again is None else again)
         }
         return {
@@ -63,8 +63,8 @@ def test_a_row_ties_with_the_first_of_a_rank_not_with_the_last(make_entry, shown
 def test_what_a_rerun_does_not_reach_does_not_count(make_entry):
     inflated, honest = make_entry("a"), make_entry("b", worse=[0])
     records = {
-        "a" * 64: judge(inflated, make_entry("c", worse=range(3)).episodes, honest.episodes, 1),
-        "b" * 64: judge(honest, honest.episodes, honest.episodes, 1),
+        "a" * 64: compare(inflated, make_entry("c", worse=range(3)).episodes, honest.episodes, 1),
+        "b" * 64: compare(honest, honest.episodes, honest.episodes, 1),
     }
     rows = rank([inflated, honest], records)["privileged"]
     assert [row.entry.submission.name for row in rows] == ["b", "a"]

@@ -47,7 +47,7 @@ def submitted(made_once):
             text=True,
         )
         assert done.returncode == 0, done.stderr
-        assert "Playing, many_preferences: 100%" in done.stderr
+        assert "Rolling out, many_preferences: 100%" in done.stderr
 
     return made_once("submitted", fill) / "symbolic"
 
@@ -258,4 +258,4 @@ def test_who_chose_the_actions_only_a_rerun_tells(submitted, kitchen_prefs, caps
     assert kitchen_prefs("leaderboard", "verify", submitted) == 0
     assert "Who chose them only a re-run tells" in " ".join(capsys.readouterr().out.split())
     said = kitchen_prefs("leaderboard", "verify", submitted, "--policy.path=anything")
-    assert said == "kitchen-prefs: A policy plays again with --rerun only; add it."
+    assert said == "kitchen-prefs: A policy is rolled out again with --rerun only; add it."

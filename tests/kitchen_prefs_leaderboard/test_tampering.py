@@ -7,6 +7,7 @@ import pytest
 
 from kitchen_prefs_leaderboard.replay import replay_split
 from kitchen_prefs_leaderboard.scoring import read_known, score_submissions
+from kitchen_prefs_leaderboard.submission_reading import read_submission
 
 SEEN = "seen.jsonl.bz2"
 
@@ -25,7 +26,7 @@ def edited(line, **changes):
 
 def refused(folder, message):
     with pytest.raises(ValueError, match=message) as error:
-        replay_split(folder, "seen")
+        replay_split(read_submission(folder), "seen")
     assert "\n" not in str(error.value)
     return str(error.value)
 
@@ -105,13 +106,13 @@ def test_a_forbidden_decision_that_is_hidden(submission):
     """A failed grasp changes nothing in the kitchen, yet who leaves it out is found out."""
     file = submission / "noisy.jsonl.bz2"
     lines = bz2.decompress(file.read_bytes()).splitlines()
-    episodes = replay_split(submission, "noisy")
+    episodes = replay_split(read_submission(submission), "noisy")
     number, failed = next((e.session, e.refused.index(True)) for e in episodes if any(e.refused))
     actions = json.loads(lines[number])["actions"]
     lines[number] = edited(lines[number], actions=actions[:failed] + actions[failed + 1 :])
     file.write_bytes(bz2.compress(b"\n".join(lines) + b"\n"))
     with pytest.raises(ValueError, match=f"line {number + 1}: "):
-        replay_split(submission, "noisy")
+        replay_split(read_submission(submission), "noisy")
 
 
 def test_another_version_of_the_data(submission):

@@ -8,7 +8,7 @@ from kitchen_prefs_leaderboard.submission_format import Policy
 from kitchen_prefs_leaderboard.submission_writing import write_submission
 from kitchen_prefs_leaderboard.verification import (
     check_policy,
-    judge,
+    compare,
     read_verifications,
     write_verification,
 )
@@ -22,7 +22,7 @@ def found(few_episodes):
     """What a re-run of an entry comes to, in which some sessions go badly."""
 
     def judged(entry, rerun=(), fresh=()):
-        return judge(entry, few_episodes(rerun), few_episodes(fresh, SALT), SALT)
+        return compare(entry, few_episodes(rerun), few_episodes(fresh, SALT), SALT)
 
     return judged
 

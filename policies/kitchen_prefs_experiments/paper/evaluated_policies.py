@@ -93,7 +93,7 @@ class Training:
         return budget // self.batch_size
 
     def options(self, budget: int) -> list[str]:
-        """What lerobot-train is told beside the recipe, for a budget of decisions."""
+        """The options of lerobot-train that override the recipe, for a budget of decisions."""
         return [
             f"--dataset.repo_id=kitchen_prefs/{self.dataset}",
             f"--batch_size={self.batch_size}",

@@ -26,7 +26,7 @@ class Table:
         metrics: The metrics that are shown; the first is that of the picture and of the paper.
         paper_values: The paper's figures: what they are called -> group -> value or, in a table of
             one group, -> row -> value.
-        prompt_use: The splits whose sessions are played with another preference's prompt, too.
+        prompt_use: The splits that are also rolled out with another preference's prompt.
         by_count: Whether there is a group for each number of dishes per rack.
         note: What is done otherwise than in the paper.
     """
