@@ -75,7 +75,7 @@ def _actions(environment: DishwasherLoading, session: int) -> Iterator[np.ndarra
     environment.reset(options={"session": session})
     terminated = False
     while not terminated:
-        action = environment.expert_action()
+        action = environment.simulator.expert_action()
         yield action
         terminated = environment.step(action)[2]
 

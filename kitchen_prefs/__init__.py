@@ -1,4 +1,4 @@
-"""Demonstrations of how people load a dishwasher, and a kitchen to try policies in.
+"""A benchmark of preferences: demonstrations of loading a dishwasher, and a kitchen for rollouts.
 
 dataset = kitchen_prefs.load_dataset("dishwasher-train-v1")
 environment = gymnasium.make("kitchen_prefs/DishwasherLoading-v0", split="seen")

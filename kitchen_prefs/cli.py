@@ -17,9 +17,9 @@ from kitchen_prefs.physics import commands as physics
 
 
 def main() -> None:
-    """Run a command; what the user can put right is said in one sentence, with exit code 1.
+    """Run a command; an error that the user can correct is one sentence, with exit code 1.
 
-    A fault of the program may be a ValueError, too; KITCHEN_PREFS_DEBUG=1 shows where it arose.
+    A bug may raise a ValueError, too; KITCHEN_PREFS_DEBUG=1 shows its traceback.
     """
     try:
         command_line()()
@@ -30,7 +30,7 @@ def main() -> None:
 
 
 def _printable(text: str) -> str:
-    """Text without what a terminal would obey: a file's name can be a stranger's."""
+    """Text without control characters: the name of a submitted file may hold some."""
     return "".join(c if c.isprintable() or c == "\n" else "?" for c in text)
 
 
@@ -41,7 +41,7 @@ def command_line() -> typer.Typer:
         epilog="With KITCHEN_PREFS_DEBUG=1 in the environment, errors come with their traceback.",
         no_args_is_help=True,
         add_completion=False,
-        pretty_exceptions_enable=False,  # main says what went wrong
+        pretty_exceptions_enable=False,  # main prints one sentence
     )
     found = sorted(entry_points(group="kitchen_prefs.commands"), key=lambda entry: entry.name)
     own = (datasets, evaluation, physics)

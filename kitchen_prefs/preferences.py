@@ -1,4 +1,4 @@
-"""What a person likes: which rack is loaded first, and what goes where in which order."""
+"""Preferences: which rack is loaded first, and which categories go where in which order."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -66,7 +66,7 @@ class Preference:
 
     @cached_property
     def in_words(self) -> str:
-        """The preference as a sentence that a person would say."""
+        """The preference as a sentence."""
         loads = [
             f"the {rack} rack with {', then '.join(map(plural, self.order(rack)))}"
             for rack in self.racks

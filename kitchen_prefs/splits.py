@@ -1,7 +1,7 @@
 """The standard splits as named constants.
 
-A split names the person of each session: 0..11 are those with the twelve preferences, from 12 on
-they are the two hundred others, whose preferences are drawn at random (see `sessions`).
+A split names the user of each session: 0..11 have the twelve preferences, 12 and above are the two
+hundred others, whose preferences are drawn at random (see `simulation.sessions`).
 """
 
 from dataclasses import dataclass

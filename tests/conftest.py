@@ -1,4 +1,4 @@
-"""What all tests share: a hub, what is made once a run, and how the workers share the tests."""
+"""What all tests share: a hub, what is made once a run, and the order: the longest files first."""
 
 import os
 import shutil
@@ -12,17 +12,9 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")  # for torch
 
 
 def pytest_collection_modifyitems(items):
-    """Put the files with the most slow tests first, and keep together what shares a fixture.
-
-    A fixture of a module is made once for the worker that has its tests; any worker may run any
-    other test.
-    """
+    """Put the files with the most slow tests first, so that none is left for the end."""
     slow = Counter(item.path for item in items if item.get_closest_marker("slow"))
     items.sort(key=lambda item: -slow[item.path])
-    for item in items:
-        fixtures = item._fixtureinfo.name2fixturedefs.values()
-        if any(definitions[-1].scope == "module" for definitions in fixtures):
-            item.add_marker(pytest.mark.xdist_group(item.path.relative_to(item.config.rootpath)))
 
 
 @pytest.fixture(scope="session")

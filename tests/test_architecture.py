@@ -43,8 +43,9 @@ POLICIES = {
 }
 EXPERIMENTS = {
     "recipes": "kitchen_prefs.utils",
+    "lerobot_train": "recipes kitchen_prefs.utils",
     "quickstart": (
-        "recipes kitchen_prefs.datasets kitchen_prefs.envs kitchen_prefs.evaluation "
+        "lerobot_train recipes kitchen_prefs.datasets kitchen_prefs.envs kitchen_prefs.evaluation "
         "kitchen_prefs.metrics kitchen_prefs.rendering kitchen_prefs.splits kitchen_prefs.utils"
     ),
     "reinforcement": (
@@ -52,8 +53,8 @@ EXPERIMENTS = {
         "kitchen_prefs.metrics kitchen_prefs.simulation kitchen_prefs.utils"
     ),
     "paper": (
-        "recipes kitchen_prefs.datasets kitchen_prefs.evaluation kitchen_prefs.metrics "
-        "kitchen_prefs.splits kitchen_prefs.utils"
+        "lerobot_train recipes kitchen_prefs.datasets kitchen_prefs.evaluation "
+        "kitchen_prefs.metrics kitchen_prefs.splits kitchen_prefs.utils"
     ),
     "__init__": "",
 }
@@ -89,7 +90,7 @@ LEADERBOARD = {
     ),
     "commands": (
         "hub_upload page policy_runs ranking score_formats scoring submission_format "
-        "submission_writing verification kitchen_prefs.utils"
+        "submission_writing verification kitchen_prefs.evaluation kitchen_prefs.utils"
     ),
     "__init__": "",
 }

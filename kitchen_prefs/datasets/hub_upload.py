@@ -18,7 +18,7 @@ CARD = "README.md"
 
 
 def push_dataset(name: str, repo_id: str, private: bool = False) -> str:
-    """Put a data set on the hub, once it has been checked.
+    """Upload a data set to the hub after checking it.
 
     Args:
         name: The data set's name; it is made if it is not there.

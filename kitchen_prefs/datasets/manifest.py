@@ -1,4 +1,4 @@
-"""What a data set says about itself, and what the package knows of the published ones.
+"""The manifest of a data set, and the fingerprints of the published ones.
 
 `meta/kitchen_prefs.json` lies in each data set: its name, data version, content fingerprint, and
 the SHA-256 of each file, so that a half-written or damaged one is found when it is opened.

@@ -98,7 +98,7 @@ def dataset_root(name: str) -> Path:
 
 
 def _sessions(split: str, users: tuple[int, ...], most: int) -> tuple[tuple[str, int], ...]:
-    """The first sessions of some people, person by person."""
+    """The first sessions of some users, user by user."""
     chosen = []
     for user in users:
         sessions = [i for i, other in enumerate(SPLITS[split].users) if other == user]

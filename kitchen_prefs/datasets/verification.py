@@ -1,4 +1,4 @@
-"""Everything that a data set must satisfy, checked against its files."""
+"""Verifies a data set against its files: every property that it must have."""
 
 import json
 from collections.abc import Callable, Iterator

@@ -1,8 +1,10 @@
 """The gymnasium environment and what it is made of.
 
 observations       what a decision sees, as an instance set and as flat summaries
+spaces             the shapes of observations and actions
 actions            the row that an action chooses
 rewards            the paper's dense reward
+session_choice     which session a reset starts
 episode_simulator  one session, decision by decision
 demonstrations     the expert's episode as a demonstration and as a prompt
 environment        `kitchen_prefs/DishwasherLoading-v0`

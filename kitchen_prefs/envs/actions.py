@@ -6,7 +6,7 @@ import numpy as np
 
 from kitchen_prefs import instances
 
-METRES_PER_RADIAN = 0.1  # what a turn counts in the distance between two poses
+METRES_PER_RADIAN = 0.1  # weight of a rotation in the distance between two poses
 
 
 def nearest_row(rows: np.ndarray, action: np.ndarray | Sequence[float]) -> tuple[int, float]:

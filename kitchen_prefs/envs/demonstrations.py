@@ -15,7 +15,7 @@ from kitchen_prefs.simulation.sessions import Session, expert_trajectory
 
 @dataclass(frozen=True)
 class Demonstration:
-    """A session as the expert does it, T decisions.
+    """The expert's episode of a session, T decisions.
 
     Attributes:
         instances: The padded instance sets, (T, N, 13) float32.

@@ -1,8 +1,4 @@
-"""The gymnasium environment: load the dishwasher as the person of the prompt does.
-
-One step is one decision: pick an object, or, with a dish in hand, a place for it. An action is a
-pose; the environment takes the nearest row that the decision may choose.
-"""
+"""The gymnasium environment: load the dishwasher as the user of the prompt does."""
 
 from typing import Any
 
@@ -12,13 +8,11 @@ import numpy as np
 from kitchen_prefs import instances
 from kitchen_prefs.envs.demonstrations import prompt_of
 from kitchen_prefs.envs.episode_simulator import EpisodeSimulator
-from kitchen_prefs.envs.observations import ENVIRONMENT_STATE_SIZE, STATE_SIZE
 from kitchen_prefs.envs.rewards import reward
+from kitchen_prefs.envs.session_choice import choose_session
+from kitchen_prefs.envs.spaces import action_space, observation_space
 from kitchen_prefs.metrics import Episode, success
-from kitchen_prefs.preferences import CATEGORIES
-from kitchen_prefs.rendering.state import SceneState
-from kitchen_prefs.simulation.expert import KitchenView, choose
-from kitchen_prefs.simulation.kitchen import Location
+from kitchen_prefs.rendering.state import SceneState, scene_of
 from kitchen_prefs.simulation.sessions import Session, make_session, prompt_sessions
 from kitchen_prefs.splits import get_split
 from kitchen_prefs.utils.suggestions import suggest
@@ -26,30 +20,50 @@ from kitchen_prefs.utils.suggestions import suggest
 TRACKS = ("standard", "privileged", "language")
 TASK = "Load the dishwasher as this person likes it, from one demonstration."
 # One constant for the data version: LeRobot reads the first environment's for its whole batch.
-# Twice the longest expert of any published session is less (tests/kitchen_prefs/test_environment.py
-# measures it).
+# Twice the longest expert episode of any published session is less
+# (tests/kitchen_prefs/envs/test_environment.py measures it).
 MAX_EPISODE_STEPS = 160
-FRESH_SALTS = 2**31  # an unseeded reset draws its salt below this, never the published salt 0
-RESET_OPTIONS = ("session", "salt")
-# LeRobot's mark of a new rollout (lerobot.envs.utils.NEW_ROLLOUT_OPTION); it changes nothing here.
-LEROBOT_OPTION = "lerobot_new_rollout"
 
 
 class DishwasherLoading(gymnasium.Env):
-    """Sessions of one split, as `kitchen_prefs/DishwasherLoading-v0`.
+    """`kitchen_prefs/DishwasherLoading-v0`: the sessions of one split.
 
-    Observations: `instances` (N, 13) the visible set, padded; `environment_state` (E,) a flat
-    summary of it; `agent_pos` (S,) joints, category in hand, decision index; `prompt` (P, 14) the
-    whole prompt demonstration, padded, or several of them, one below the other; on the privileged
-    track also `preference` (1,), the label.
+    One step is one decision: pick an object, or, with a dish in hand, a place for it.
+
+    | observation | shape | content |
+    |---|---|---|
+    | `instances` | (72, 13) | the visible set, zero-padded, see `kitchen_prefs.instances` |
+    | `environment_state` | (53,) | a flat summary of the set, see `envs.observations` |
+    | `agent_pos` | (11,) | joints (rad, m), category in hand, decision index |
+    | `prompt` | (1664 n, 14) | n prompt demonstrations, zero-padded; column 13 marks choices |
+    | `preference` | (1,) | the preference's label; on the privileged track alone |
+
+    All observations are float32. An **action** is a pose, (7,): position in m and quaternion
+    (wxyz). The environment takes the nearest row that the decision may choose
+    (`envs.actions.nearest_row`). The **reward** is 1 for picking a dish of the category that the
+    preference calls for and for a free placement in its preferred rack, else 0
+    (`envs.rewards`). A decision that the kitchen refuses changes nothing and earns 0.
+
+    An episode is **terminated** when every dish has arrived and is put away, both racks are in and
+    the door is closed. It is **truncated** at twice the expert's number of decisions.
+
+    | info | content |
+    |---|---|
+    | `is_success` | whether PE is 1 and everything is closed |
+    | `refusal` | why the kitchen did not carry the decision out, else "" |
+    | `distance` | from the action to the row that was taken: m, plus 0.1 m a radian |
+    | `session` | the session's index in its split |
 
     Args:
-        split: The split whose sessions are played.
-        track: "standard" tells nothing of the preference but the prompt, "privileged" adds the
+        split: The split whose sessions are simulated.
+        track: "standard" shows nothing of the preference but the prompt, "privileged" adds the
             label, "language" gives the preference in words as `task_description`.
         prompt_of: "same", or "other" for a prompt of another preference (the metric prompt use).
-        prompts: How many demonstrations prompt an episode.
+        prompts: The number n of demonstrations in a prompt.
         render_mode: None or "rgb_array".
+
+    Attributes:
+        simulator: The episode, from the last `reset` on.
 
     Raises:
         ValueError: If an argument is unknown.
@@ -58,6 +72,7 @@ class DishwasherLoading(gymnasium.Env):
     metadata = {"render_modes": ["rgb_array"], "render_fps": 4}  # noqa: RUF012 (gymnasium's own form)
     _max_episode_steps = MAX_EPISODE_STEPS
     task = "kitchen_prefs"
+    simulator: EpisodeSimulator
 
     def __init__(
         self,
@@ -74,16 +89,8 @@ class DishwasherLoading(gymnasium.Env):
         self.prompt_of = prompt_of
         self.prompts = prompts
         self.render_mode = render_mode
-        self.action_space = _box(7)
-        self.observation_space = gymnasium.spaces.Dict(
-            {
-                "instances": _box(instances.CAPACITY, instances.COLUMNS),
-                "environment_state": _box(ENVIRONMENT_STATE_SIZE),
-                "agent_pos": _box(STATE_SIZE),
-                "prompt": _box(prompts * instances.PROMPT_CAPACITY, instances.PROMPT_COLUMNS),
-                **({"preference": _box(1)} if track == "privileged" else {}),
-            }
-        )
+        self.action_space = action_space()
+        self.observation_space = observation_space(track, prompts)
         self._renderer: Any = None
 
     @property
@@ -94,24 +101,24 @@ class DishwasherLoading(gymnasium.Env):
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
-        """Start a session.
+        """Start a session; `session_choice.choose_session` says which.
 
         Args:
-            seed: Starts session `seed` modulo the split's size. Without a seed or a session, one
-                is drawn from this environment's own generator; unless a salt is given, so is the
-                salt, and the session is a fresh one, which no published split has.
-            options: `{"session": i, "salt": k}` starts session i of salt k. The salt is 0 if only a
-                session or a seed is given.
+            seed: Starts session `seed` modulo the split's size.
+            options: `{"session": i, "salt": k}` starts session i with session seed (salt) k.
 
         Returns:
             The observation and the info.
 
         Raises:
-            ValueError: If an option is unknown or is not a whole number, or if there is no such
-                session.
+            ValueError: If there is no such option or session.
         """
         super().reset(seed=seed)
-        self._start(*self._which_session(seed, options or {}))
+        index, salt = choose_session(self.split, seed, options or {}, lambda: self.np_random)
+        session = make_session(self.split.name, index, salt)
+        self.simulator = EpisodeSimulator(session)
+        sources = prompt_sessions(session, self.prompt_of, self.prompts)
+        self._prompt = np.concatenate([prompt_of(source) for source in sources])
         return self._observe(), self._info("", 0.0)
 
     def step(
@@ -123,19 +130,18 @@ class DishwasherLoading(gymnasium.Env):
             action: The chosen row's pose: position (m) and quaternion (wxyz), (7,).
 
         Returns:
-            Observation, reward, terminated, truncated and info; `info["refusal"]` says why the
-            kitchen did not carry the decision out ("" if it did), `info["distance"]` how far the
-            action was from the row that was taken (m, plus 0.1 m a radian).
+            Observation, reward, terminated, truncated and info.
 
         Raises:
             ValueError: If the action has another shape or is not finite.
         """
-        instance, distance = self._simulator.choose(action)
-        gained = reward(self._view, self.session.preference, instance)
-        refusal = self._simulator.decide(instance, action)
-        earned = gained if not refusal else 0.0
+        simulator = self.simulator
+        instance, distance = simulator.choose(action)
+        gained = reward(simulator.view, self.session.preference, instance)
+        refusal = simulator.decide(instance, action)
+        earned = 0.0 if refusal else gained
         info = self._info(refusal, distance)
-        return self._observe(), earned, self._simulator.terminated, self._simulator.truncated, info
+        return self._observe(), earned, simulator.terminated, simulator.truncated, info
 
     def render(self) -> np.ndarray | None:
         """A picture of the kitchen, (H, W, 3) uint8, if `render_mode` is "rgb_array"."""
@@ -149,116 +155,45 @@ class DishwasherLoading(gymnasium.Env):
         return self._renderer.render(self.scene())
 
     def close(self) -> None:
-        """Give the renderer back."""
+        """Release the renderer."""
         if self._renderer is not None:
             self._renderer.close()
             self._renderer = None
 
-    # What rollouts and scores read ------------------------------------------------------------
-
     @property
     def session(self) -> Session:
-        """The session that is being played."""
-        return self._simulator.session
-
-    def instance_of(self, action: np.ndarray) -> int:
-        """The instance that an action would choose now."""
-        return self._simulator.choose(action)[0]
-
-    def expert_action(self) -> np.ndarray:
-        """The action with which the expert would go on from here, (7,)."""
-        seen = self._simulator.seen
-        row = seen.row_of(choose(self._view, self.session.preference))
-        return seen.rows[row, instances.POSE]
-
-    def feasible_rows(self) -> np.ndarray:
-        """The rows that the kitchen would carry out now, (N,) bool.
-
-        An oracle, which no track tells: it knows, for one, which placements a dish blocks.
-        """
-        seen = self._simulator.seen
-        feasible = np.zeros(instances.CAPACITY, dtype=bool)
-        for row in np.flatnonzero(instances.choosable(seen.rows)):
-            feasible[row] = not self._simulator.kitchen.refusal(int(seen.ids[row]))
-        return feasible
-
-    def scene(self, opened: bool = False) -> SceneState:
-        """What a renderer draws.
-
-        Args:
-            opened: Draw the door open and both racks pulled out, whatever they are, so that a
-                picture shows what is in them.
-        """
-        kitchen = self._simulator.kitchen
-        poses = kitchen.pose if opened else kitchen.pose_in_world()
-        dishes = tuple(
-            (CATEGORIES[kitchen.dishes.category[i]], pose[:3], pose[3:])
-            for i, pose in enumerate(poses)
-            if kitchen.location[i] != Location.NOT_ARRIVED
-        )
-        joints = (kitchen.door_open, kitchen.out == "bottom", kitchen.out == "top")
-        return SceneState(*((True, True, True) if opened else joints), dishes)
-
-    def digest(self) -> str:
-        """A hash of the kitchen's state and of the decisions that led to it."""
-        return self._simulator.digest()
+        """The session of the present episode."""
+        return self.simulator.session
 
     def episode(self) -> Episode:
         """The facts of the episode so far, from which every metric is computed."""
-        return self._simulator.episode()
+        return self.simulator.episode()
 
-    # Inside -----------------------------------------------------------------------------------
+    def digest(self) -> str:
+        """A hash of the kitchen's state and of all decisions so far, as submissions hold it."""
+        return self.simulator.digest()
 
-    def _which_session(self, seed: int | None, options: dict[str, Any]) -> tuple[int, int]:
-        """The index and the salt of the session to start."""
-        _check_options(options)
-        if "session" in options:
-            return int(options["session"]), int(options.get("salt", 0))
-        if seed is not None:
-            return seed % self.split.sessions, int(options.get("salt", 0))
-        salt = options["salt"] if "salt" in options else self.np_random.integers(1, FRESH_SALTS)
-        return int(self.np_random.integers(self.split.sessions)), int(salt)
-
-    def _start(self, index: int, salt: int) -> None:
-        session = make_session(self.split.name, index, salt)
-        self._simulator = EpisodeSimulator(session)
-        self._view = KitchenView(self._simulator.kitchen)
-        sources = prompt_sessions(session, self.prompt_of, self.prompts)
-        self._prompt = np.concatenate([prompt_of(source) for source in sources])
+    def scene(self, opened: bool = False) -> SceneState:
+        """What a renderer draws; `opened` shows the load whatever is closed."""
+        return scene_of(self.simulator.kitchen, opened)
 
     def _observe(self) -> dict[str, np.ndarray]:
-        seen = self._simulator.seen
-        environment_state, state = self._simulator.observer.flat(seen)
-        observation = {
-            "instances": instances.pack(seen.rows),
+        observation = self.simulator.observation
+        environment_state, state = self.simulator.observer.flat(observation)
+        observed = {
+            "instances": instances.pack(observation.rows),
             "environment_state": environment_state,
             "agent_pos": state,
             "prompt": self._prompt.copy(),
         }
         if self.track == "privileged":
-            observation["preference"] = np.array([self.session.label], dtype=np.float32)
-        return observation
+            observed["preference"] = np.array([self.session.label], dtype=np.float32)
+        return observed
 
     def _info(self, refusal: str, distance: float) -> dict[str, Any]:
         return {
-            "is_success": self._simulator.terminated and success(self.episode()),
+            "is_success": self.simulator.terminated and success(self.episode()),
             "refusal": refusal,
             "distance": distance,
             "session": self.session.index,
         }
-
-
-def _check_options(options: dict[str, Any]) -> None:
-    for name, value in options.items():
-        if name == LEROBOT_OPTION:
-            continue
-        if name not in RESET_OPTIONS:
-            raise ValueError(
-                f"reset() knows no option {name!r}. {suggest(str(name), RESET_OPTIONS)}"
-            )
-        if not isinstance(value, int | np.integer):
-            raise ValueError(f"The option {name!r} is a whole number, not {value!r}.")
-
-
-def _box(*shape: int) -> gymnasium.spaces.Box:
-    return gymnasium.spaces.Box(-np.inf, np.inf, shape, np.float32)

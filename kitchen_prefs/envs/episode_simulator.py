@@ -1,6 +1,6 @@
-"""One session being played: what is seen, what an action decides, and the facts of the episode.
+"""One session simulated decision by decision: observations, decisions and the episode's facts.
 
-The gymnasium environment and the replays of the leaderboard play this one game.
+The gymnasium environment and the leaderboard's replay both use it.
 """
 
 import hashlib
@@ -8,11 +8,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from kitchen_prefs import instances
 from kitchen_prefs.envs.actions import nearest_row
-from kitchen_prefs.envs.observations import FAILED_PICKS, Observation, Observer
+from kitchen_prefs.envs.observations import FAILED_PICKS, Observer
 from kitchen_prefs.metrics import Episode
 from kitchen_prefs.preferences import CATEGORIES, RACKS
 from kitchen_prefs.simulation import kitchen as k
+from kitchen_prefs.simulation.expert import KitchenView, choose
 from kitchen_prefs.simulation.kitchen import Kitchen, Location, decision_kind
 from kitchen_prefs.simulation.sessions import Session, expert_trajectory
 from kitchen_prefs.splits import get_split
@@ -23,24 +25,27 @@ LIMIT_FACTOR = 2  # an episode ends at twice the expert's number of decisions
 
 
 class EpisodeSimulator:
-    """A session from its start to where it stands now.
+    """A session from its start to where it is now.
 
     Args:
-        session: What is played.
+        session: What is simulated.
 
     Attributes:
-        session: What is played.
+        session: What is simulated.
         kitchen: Its kitchen.
-        seen: What the next decision sees.
+        view: The kitchen as the expert sees it.
+        observer: Makes the observations.
+        observation: The observation of the next decision.
         decisions: The instances chosen so far.
-        forbidden: For each of them, whether the kitchen could not carry it out.
-        limit: How many decisions an episode has at most.
+        refused: For each of them, whether it could not be carried out.
+        limit: The number of decisions at which the episode is truncated.
     """
 
     def __init__(self, session: Session) -> None:
         noisy = get_split(session.split).noisy
         self.session = session
         self.kitchen = Kitchen(session.dishes)
+        self.view = KitchenView(self.kitchen)
         self.decisions: list[int] = []
         self.refused: list[bool] = []
         self.limit = LIMIT_FACTOR * len(expert_trajectory(session).decisions)
@@ -49,7 +54,7 @@ class EpisodeSimulator:
         self._grasp = session.generator("grasp") if noisy else None
         noise = session.generator("noise") if noisy else None
         self.observer = Observer(self.kitchen, session.generator("order"), noise)
-        self.seen: Observation = self.observer.observe()
+        self.observation = self.observer.observe()
 
     @property
     def terminated(self) -> bool:
@@ -67,19 +72,19 @@ class EpisodeSimulator:
         Raises:
             ValueError: If the action has another shape or is not finite.
         """
-        row, distance = nearest_row(self.seen.rows, action)
-        return int(self.seen.ids[row]), distance
+        row, distance = nearest_row(self.observation.rows, action)
+        return int(self.observation.ids[row]), distance
 
     def act(self, action: Action) -> str:
-        """Carry out the decision for what an action chooses; see `choose` and `decide`."""
+        """Carry out the decision that an action chooses; see `choose` and `decide`."""
         return self.decide(self.choose(action)[0], action)
 
     def decide(self, instance: int, action: Action) -> str:
-        """Carry out one decision and look again.
+        """Carry out one decision and observe again.
 
         Args:
             instance: What the action chooses.
-            action: The action, which is kept.
+            action: The action, which is recorded.
 
         Returns:
             Why the kitchen did not carry it out, or an empty string.
@@ -90,8 +95,23 @@ class EpisodeSimulator:
         self.refused.append(bool(refusal))
         self._actions.append(tuple(float(value) for value in action))
         self._closed_early += early and not refusal
-        self.seen = self.observer.observe()
+        self.observation = self.observer.observe()
         return refusal
+
+    def expert_action(self) -> np.ndarray:
+        """The action with which the expert would continue from here, (7,)."""
+        row = self.observation.row_of(choose(self.view, self.session.preference))
+        return self.observation.rows[row, instances.POSE]
+
+    def feasible_rows(self) -> np.ndarray:
+        """The rows that the kitchen would carry out now, zero-padded, (N,) bool.
+
+        An oracle, which no track shows: it knows, for one, which placements are blocked.
+        """
+        feasible = np.zeros(instances.CAPACITY, dtype=bool)
+        for row in np.flatnonzero(instances.choosable(self.observation.rows)):
+            feasible[row] = not self.kitchen.refusal(int(self.observation.ids[row]))
+        return feasible
 
     def digest(self) -> str:
         """A hash of the kitchen's state and of all that was decided, the same in every process."""

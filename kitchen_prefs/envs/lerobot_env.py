@@ -9,9 +9,8 @@ from lerobot.envs.configs import EnvConfig
 from lerobot.envs.utils import freeze_after_episode_end
 from lerobot.utils.constants import ACTION, OBS_ENV_STATE, OBS_STATE
 
-from kitchen_prefs import instances
 from kitchen_prefs.envs.environment import TRACKS, DishwasherLoading
-from kitchen_prefs.envs.observations import ENVIRONMENT_STATE_SIZE, STATE_SIZE
+from kitchen_prefs.envs.spaces import action_space, observation_space
 from kitchen_prefs.splits import get_split
 from kitchen_prefs.utils.suggestions import suggest
 
@@ -29,19 +28,20 @@ FEATURES_MAP = {
 }
 
 
+# Everything else that the environment shows is of the type STATE.
+FEATURE_TYPES = {"environment_state": FeatureType.ENV}
+
+
 def features_of(track: str) -> dict[str, PolicyFeature]:
     """The environment's raw keys on a track, as LeRobot's features."""
-    prompt_shape = (instances.PROMPT_CAPACITY, instances.PROMPT_COLUMNS)
-    features = {
-        ACTION: PolicyFeature(FeatureType.ACTION, (7,)),
-        "agent_pos": PolicyFeature(FeatureType.STATE, (STATE_SIZE,)),
-        "environment_state": PolicyFeature(FeatureType.ENV, (ENVIRONMENT_STATE_SIZE,)),
-        "instances": PolicyFeature(FeatureType.STATE, (instances.CAPACITY, instances.COLUMNS)),
-        "prompt": PolicyFeature(FeatureType.STATE, prompt_shape),
+    shown = observation_space(track, prompts=1).spaces
+    return {
+        ACTION: PolicyFeature(FeatureType.ACTION, action_space().shape),
+        **{
+            key: PolicyFeature(FEATURE_TYPES.get(key, FeatureType.STATE), space.shape or ())
+            for key, space in shown.items()
+        },
     }
-    if track == "privileged":
-        features["preference"] = PolicyFeature(FeatureType.STATE, (1,))
-    return features
 
 
 @EnvConfig.register_subclass("kitchen_prefs")

@@ -1,9 +1,9 @@
-"""What a decision sees: the visible instances as rows in random order, and a flat summary of them.
+"""Observations: the visible instances as rows in random order, and a flat summary of them.
 
 The flat summary serves policies that cannot read a set, such as LeRobot's ACT. Its entries are
-listed in ENVIRONMENT_STATE and STATE; it holds nothing that the visible set does not. Where sight
-is noisy, its positions are too; its counts are right, because the noise is too small to take one
-category for another.
+listed in ENVIRONMENT_STATE and STATE; it holds nothing that the visible set does not. Where
+perception is noisy, its positions are too; its counts are exact, because the noise is too small to
+confuse two categories.
 """
 
 from dataclasses import dataclass
@@ -52,11 +52,11 @@ ENVIRONMENT_STATE_SIZE = len(ENVIRONMENT_STATE)
 
 @dataclass(frozen=True)
 class Observation:
-    """What one decision sees.
+    """The observation of one decision.
 
     Attributes:
         rows: The instance set, (n, 13) float32, see `instances`.
-        ids: The instance that each row stands for, (n,) int.
+        ids: The instance of each row, (n,) int.
     """
 
     rows: np.ndarray
@@ -68,12 +68,12 @@ class Observation:
 
 
 class Observer:
-    """Looks at one session's kitchen, decision after decision.
+    """Observes one session's kitchen before each decision.
 
     Args:
         kitchen: The kitchen, which it never changes.
         order: Draws the order of the rows, anew for each decision.
-        noise: Draws the errors of perception; None sees exactly.
+        noise: Draws the errors of perception; without it observations are exact.
     """
 
     def __init__(
@@ -86,7 +86,7 @@ class Observer:
         self._decision = 0
 
     def observe(self) -> Observation:
-        """See the kitchen before the next decision."""
+        """The observation of the next decision."""
         dishes = self._kitchen.visible_dishes()
         extents, position = self._perceive()
         objects = self._object_rows(dishes, extents, position)  # (3 + d, 13)
@@ -98,24 +98,26 @@ class Observer:
         self._decision += 1
         return Observation(rows[order], ids[order])
 
-    def flat(self, seen: Observation) -> tuple[np.ndarray, np.ndarray]:
-        """What the last observation says without its set.
+    def flat(self, observation: Observation) -> tuple[np.ndarray, np.ndarray]:
+        """The last observation as flat vectors.
 
         Args:
-            seen: The last observation; the kitchen stands as it did then.
+            observation: The last observation; the kitchen has not changed since.
 
         Returns:
             The summary of the set, (E,) float32, see ENVIRONMENT_STATE; joints, category in hand
             and decision index, (S,) float32, see STATE.
         """
         dishes = self._kitchen.visible_dishes()
-        rows = seen.rows[np.argsort(seen.ids)][len(OBJECT_IDS) : len(OBJECT_IDS) + len(dishes)]
+        rows = observation.rows[np.argsort(observation.ids)][
+            len(OBJECT_IDS) : len(OBJECT_IDS) + len(dishes)
+        ]
         decision = [self._decision - 1]
         state = np.concatenate([self._joints(), self._in_hand(), decision])  # (S,)
         return self._summary(dishes, rows), state.astype(np.float32)
 
     def _perceive(self) -> tuple[np.ndarray, np.ndarray]:
-        """The extents and the position of each dish as they appear now, (n, 3) each."""
+        """The perceived extents and position of each dish, (n, 3) each."""
         position = self._kitchen.pose[:, :3]
         if self._noise is None:
             return self._extents, position
@@ -166,14 +168,14 @@ class Observer:
         category = kitchen.dishes.category[dishes]
         on_counter = kitchen.location[dishes] == Location.COUNTER
         count = np.bincount(category[on_counter], minlength=len(CATEGORIES))
-        standing = np.bincount(category[~on_counter], minlength=len(CATEGORIES))
+        in_rack = np.bincount(category[~on_counter], minlength=len(CATEGORIES))
         nearest = np.zeros((len(CATEGORIES), 3))
         position = rows[:, instances.POSITION]  # (d, 3)
         metres = np.hypot(*(position[:, :2] - layout.SINK_CENTRE).T)  # (d,)
         far_to_near = np.argsort(-metres)
         far_to_near = far_to_near[on_counter[far_to_near]]
         nearest[category[far_to_near]] = position[far_to_near]  # the nearest is written last
-        parts = (count, nearest.ravel(), self._joints(), self._in_hand(), standing)
+        parts = (count, nearest.ravel(), self._joints(), self._in_hand(), in_rack)
         return np.concatenate([*parts, self._nearest_free()]).astype(np.float32)
 
     def _nearest_free(self) -> np.ndarray:

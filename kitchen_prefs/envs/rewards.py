@@ -7,14 +7,14 @@ from kitchen_prefs.simulation.kitchen import Kitchen, Location, decision_kind
 
 
 def reward(view: KitchenView, preference: Preference, instance: int) -> float:
-    """What a decision is worth, judged before the kitchen carries it out.
+    """The reward of a decision, computed before the kitchen carries it out.
 
-    Picking a dish of the category that the preference calls for now is worth 1, and so is putting a
-    dish into a free placement of the rack that the preference gives its category.
+    It is 1 for picking a dish of the category that the preference calls for now, and for placing a
+    dish into a free placement of the rack that the preference gives its category; else 0.
 
     Args:
         view: The kitchen in which the decision is taken; not finished.
-        preference: Whose dishwasher it is.
+        preference: The user's preference.
         instance: The chosen instance.
 
     Returns:

@@ -1,7 +1,8 @@
 """Evaluates policies on splits.
 
 policy_loading        a LeRobot policy with its processors, ready to act
-checkpoint_reading    a checkpoint's files, and what is wrong with them in one sentence
+policy_options        the command-line options that name a policy
+checkpoint_reading    a checkpoint's files, checked
 rollouts              a policy on every session of a split
 episode_files         one JSON line an episode
 evaluator             a policy's episodes, metrics and failure modes on a split

@@ -1,4 +1,4 @@
-"""A LeRobot checkpoint, read so that what is wrong with its files is said in one sentence.
+"""Reads a LeRobot checkpoint; a damaged file is named in one sentence.
 
 pretrained_model/
     config.json               the policy's type and settings
@@ -25,23 +25,22 @@ from lerobot.processor import PolicyProcessorPipeline, ProcessorStepRegistry
 from lerobot.processor.pipeline import ProcessorMigrationError
 from safetensors import SafetensorError
 
-from kitchen_prefs.utils.suggestions import suggest
+from kitchen_prefs.utils.suggestions import check_settings, suggest
 
 CONFIG = "config.json"
 WEIGHTS = "model.safetensors"
 PROCESSORS = ("policy_preprocessor.json", "policy_postprocessor.json")
-WAY_OUT = "give another checkpoint, or save it again with this version of the policy."
+DEVICE_STEP = "device_processor"  # moves observations to where the policy runs
+ADVICE = "give another checkpoint, or save it again with this version of the policy."
 
-# What draccus, json, safetensors and LeRobot raise for files that are not what they should be.
+# What json, draccus, safetensors and LeRobot raise for damaged files. AttributeError, KeyError and
+# TypeError are not among them: they would hide mistakes in the program.
 READING_ERRORS = (
     ParsingError,
     ProcessorMigrationError,
     SafetensorError,
-    AttributeError,
     ImportError,
-    KeyError,
     OSError,
-    TypeError,
     ValueError,
 )
 
@@ -65,7 +64,7 @@ def find_checkpoint(path: str) -> Path:
         raise ValueError(f"{nowhere}.")
     for name in (WEIGHTS, *PROCESSORS):
         if not (folder / name).is_file():
-            raise ValueError(f"The checkpoint {folder} lacks {name}; {WAY_OUT}")
+            raise ValueError(f"The checkpoint {folder} lacks {name}; {ADVICE}")
     return folder
 
 
@@ -77,14 +76,15 @@ def read_config(folder: Path, options: Sequence[str]) -> PreTrainedConfig:
             setting.
     """
     file = folder / CONFIG
-    with _damage_reported(file):
-        policy_type = str(_read_json(file)["type"])
+    policy_type = _read_json(file).get("type")
+    if not isinstance(policy_type, str):
+        raise _damaged(file)
     known = PreTrainedConfig.get_known_choices()
     if policy_type not in known:
         raise ValueError(
             f"{file} is of the unknown policy type {policy_type!r}. {suggest(policy_type, known)}"
         )
-    check_settings(known[policy_type], options)
+    check_settings("The policy", setting_names(known[policy_type]), options)
     with _damage_reported(file):
         PreTrainedConfig.from_pretrained(folder)
     config = PreTrainedConfig.from_pretrained(folder, cli_overrides=list(options))
@@ -92,13 +92,9 @@ def read_config(folder: Path, options: Sequence[str]) -> PreTrainedConfig:
     return config
 
 
-def check_settings(config_class: type[PreTrainedConfig], options: Sequence[str]) -> None:
-    """Raise a ValueError if an option names a setting that the policy does not have."""
-    known = [field.name for field in fields(config_class)]
-    for option in options:
-        name = option.removeprefix("--").partition("=")[0]
-        if name.partition(".")[0] not in known:
-            raise ValueError(f"The policy has no setting {name!r}. {suggest(name, known)}")
+def setting_names(config_class: type[PreTrainedConfig]) -> list[str]:
+    """The names of a policy's settings."""
+    return [field.name for field in fields(config_class)]
 
 
 def read_policy(folder: Path, config: PreTrainedConfig) -> PreTrainedPolicy:
@@ -110,10 +106,10 @@ def read_policy(folder: Path, config: PreTrainedConfig) -> PreTrainedPolicy:
     try:
         return get_policy_class(config.type).from_pretrained(folder, config=config, strict=True)
     except SafetensorError as error:
-        raise ValueError(f"{folder / WEIGHTS} is damaged; {WAY_OUT}") from error
+        raise ValueError(f"{folder / WEIGHTS} is damaged; {ADVICE}") from error
     except RuntimeError as error:  # torch's, for weights of other names or shapes
         raise ValueError(
-            f"The weights in {folder} do not fit the config.json beside them; {WAY_OUT}"
+            f"The weights in {folder} do not fit the config.json beside them; {ADVICE}"
         ) from error
 
 
@@ -126,34 +122,48 @@ def read_processors(
         ValueError: If one of their files is damaged, or has a step that is not LeRobot's or a
             plug-in's.
     """
-    for name in PROCESSORS:
-        _check_steps(folder / name)
-    overrides = {"device_processor": {"device": config.device}}
+    preprocessor, postprocessor = (folder / name for name in PROCESSORS)
+    if DEVICE_STEP not in _registered_steps(preprocessor):
+        raise _damaged(preprocessor)
+    _registered_steps(postprocessor)
+    overrides = {DEVICE_STEP: {"device": config.device}}
     with _damage_reported(f"A processor in {folder}"):
         return make_pre_post_processors(config, str(folder), preprocessor_overrides=overrides)
 
 
-def _check_steps(file: Path) -> None:
-    """LeRobot would import and call whatever a step without a registered name says it is."""
-    with _damage_reported(file):
-        steps = [step.get("registry_name") for step in _read_json(file)["steps"]]
-    for name in steps:
-        if name not in ProcessorStepRegistry.list():
-            raise ValueError(f"{file} has a step that is not registered, so it is not run.")
+def _registered_steps(file: Path) -> list[str]:
+    """The names of a processor's steps. All are registered: LeRobot would import and call others.
+
+    Raises:
+        ValueError: If the file is damaged, or a step is not registered.
+    """
+    steps = _read_json(file).get("steps")
+    if not isinstance(steps, list) or not all(isinstance(step, dict) for step in steps):
+        raise _damaged(file)
+    names = [step.get("registry_name") for step in steps]
+    if not all(name in ProcessorStepRegistry.list() for name in names):
+        raise ValueError(f"{file} has a step that is not registered, so it is not run.")
+    if not all(isinstance(step.get("state_file", ""), str) for step in steps):
+        raise _damaged(file)
+    return names
 
 
 def _read_json(file: Path) -> dict[str, Any]:
     with _damage_reported(file):
         content = json.loads(file.read_text())
-        if not isinstance(content, dict):
-            raise TypeError("It must be an object.")
+    if not isinstance(content, dict):
+        raise _damaged(file)
     return content
 
 
 @contextmanager
 def _damage_reported(what: Path | str) -> Iterator[None]:
-    """Whatever a file's reader raises becomes one sentence about the file."""
+    """Turns what a file's reader raises into one sentence about the file."""
     try:
         yield
     except READING_ERRORS as error:
-        raise ValueError(f"{what} is damaged; {WAY_OUT}") from error
+        raise _damaged(what) from error
+
+
+def _damaged(what: Path | str) -> ValueError:
+    return ValueError(f"{what} is damaged; {ADVICE}")

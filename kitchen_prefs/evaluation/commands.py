@@ -12,6 +12,12 @@ import typer
 from rich.console import Console
 from rich.table import Table
 
+from kitchen_prefs.evaluation.policy_options import (
+    ANY_SETTING,
+    PolicyPath,
+    PolicyType,
+    settings_of,
+)
 from kitchen_prefs.metrics import METRICS, Interval
 from kitchen_prefs.splits import get_split
 from kitchen_prefs.utils.files import make_folder
@@ -25,37 +31,34 @@ console = Console()
 Track = Annotated[
     str | None,
     typer.Option(
-        help="What the policy is told: standard, privileged or language.",
+        help="What the policy observes: standard, privileged or language.",
         show_default="as the policy asks",
     ),
 ]
-BatchSize = Annotated[int, typer.Option(help="How many sessions are played at once.", min=1)]
+BatchSize = Annotated[int, typer.Option(help="How many sessions are rolled out at once.", min=1)]
 
 
-@app.command(context_settings={"allow_extra_args": True, "ignore_unknown_options": True})
+@app.command(context_settings=ANY_SETTING)
 def evaluate(
     context: typer.Context,
     split: Annotated[list[str], typer.Option(help="A split; several, or a list with commas.")],
     out: Annotated[Path, typer.Option(help="The folder that keeps the episodes.")],
-    path: Annotated[
-        str | None, typer.Option("--policy.path", help="A checkpoint's folder, or its hub name.")
-    ] = None,
-    policy_type: Annotated[
-        str | None, typer.Option("--policy.type", help="A policy that needs no training.")
-    ] = None,
+    path: PolicyPath = None,
+    policy_type: PolicyType = None,
     track: Track = None,
     salt: Annotated[
-        int, typer.Option(help="0: the published sessions; else fresh ones.", min=0)
+        int,
+        typer.Option(help="The session seed; 0: the published sessions.", min=0),
     ] = 0,
     prompts: Annotated[
         int, typer.Option(help="How many demonstrations prompt an episode.", min=1)
     ] = 1,
     batch_size: BatchSize = 16,
     prompt_use: Annotated[
-        bool, typer.Option("--prompt-use", help="Also play with another preference's prompt.")
+        bool, typer.Option("--prompt-use", help="Also roll out with another preference's prompt.")
     ] = False,
     category_accuracy: Annotated[
-        bool, typer.Option("--category-accuracy", help="Also ask in each state of the expert.")
+        bool, typer.Option("--category-accuracy", help="Also choose in each state of the expert.")
     ] = False,
 ) -> None:
     """Roll a policy out on splits and print its metrics and why episodes fell short.
@@ -117,16 +120,6 @@ def select(
 def _names(splits: Sequence[str]) -> list[str]:
     names = [name.strip() for text in splits for name in text.split(",")]
     return list(dict.fromkeys(get_split(name).name for name in names))
-
-
-def settings_of(arguments: Sequence[str]) -> list[str]:
-    """The --policy.SETTING=VALUE among the unknown arguments, as --SETTING=VALUE."""
-    for argument in arguments:
-        if not argument.startswith("--policy.") or "=" not in argument:
-            raise ValueError(
-                f"There is no option {argument!r}; a policy's setting is --policy.SETTING=VALUE."
-            )
-    return [f"--{argument.removeprefix('--policy.')}" for argument in arguments]
 
 
 def _print_summary(summary: "Summary") -> None:

@@ -20,13 +20,13 @@ from lerobot.utils.import_utils import register_third_party_plugins
 
 from kitchen_prefs.envs.lerobot_env import KitchenPrefsEnv
 from kitchen_prefs.evaluation.checkpoint_reading import (
-    check_settings,
     find_checkpoint,
     read_config,
     read_policy,
     read_processors,
+    setting_names,
 )
-from kitchen_prefs.utils.suggestions import suggest
+from kitchen_prefs.utils.suggestions import check_settings, suggest
 
 # Where a policy runs and where it is kept say nothing about what it does.
 NOT_BEHAVIOUR = (
@@ -148,7 +148,7 @@ def _untrained(policy_type: str, options: Sequence[str], track: str | None) -> L
     known = PreTrainedConfig.get_known_choices()
     if policy_type not in known:
         raise ValueError(f"There is no policy type {policy_type!r}. {suggest(policy_type, known)}")
-    check_settings(known[policy_type], options)
+    check_settings("The policy", setting_names(known[policy_type]), options)
     config = draccus.parse(known[policy_type], args=list(options))
     environment = _environment(config, track)
     features = env_to_policy_features(environment)

@@ -114,8 +114,8 @@ def _play(
         for i in tuple(playing):
             environment, action = environments[i], actions[i]
             if expert_states:
-                chosen[i].append(environment.instance_of(action))
-                action = environment.expert_action()
+                chosen[i].append(environment.simulator.choose(action)[0])
+                action = environment.simulator.expert_action()
             observations[i], _, terminated, truncated, _ = environment.step(action)
             if terminated or truncated:
                 playing.remove(i)

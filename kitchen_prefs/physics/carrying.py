@@ -1,4 +1,4 @@
-"""Whether carried dishes really stay where they stand: the physics behind the kitchen's kinematics.
+"""Checks under contact physics that dishes stay in place when a loaded rack slides in.
 
 The kitchen moves a rack with its dishes as one rigid piece. Here all dishes of a load stand in the
 rack together, settle, and the rack slides in under contact physics.

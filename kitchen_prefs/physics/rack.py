@@ -50,7 +50,7 @@ def _tines_along(spacing: float) -> np.ndarray:
 
 
 def _add_walls(rack: mujoco.MjsBody, half_x: float, half_y: float) -> None:
-    """Wires for the eye, and four boxes behind them that dishes cannot poke through."""
+    """Visual wires, and four collision boxes behind them."""
     corners = [(-half_x, -half_y), (half_x, -half_y), (half_x, half_y), (-half_x, half_y)]
     for start, end in zip(corners, corners[1:] + corners[:1], strict=True):
         for level in WALL_LEVELS:

@@ -16,7 +16,7 @@ from kitchen_prefs.rendering.tableware import surface
 CAMERA = "kitchen"
 CAMERA_POSITION = (0.86, -3.05, 2.02)
 CAMERA_TARGET = (-0.62, 0.10, 0.68)
-FIELD_OF_VIEW = 41.0  # degrees, from below to above: as of a person who stands before the kitchen
+FIELD_OF_VIEW = 41.0  # degrees, vertical: the view of somebody who stands before the kitchen
 
 
 @dataclass(frozen=True)
@@ -87,7 +87,7 @@ def _add_lights(spec: mujoco.MjSpec, shadows: bool) -> None:
 
 
 def _add_camera(spec: mujoco.MjSpec) -> None:
-    """A person's view from the front right: all of the counter, and into both racks."""
+    """The view from the front right: all of the counter, and into both racks."""
     ahead = np.subtract(CAMERA_TARGET, CAMERA_POSITION)
     across = np.cross(ahead, (0.0, 0.0, 1.0))
     axes = np.stack([across, np.cross(across, ahead), -ahead], axis=1)  # a camera looks along -z

@@ -1,4 +1,4 @@
-"""Surfaces for the eye: turned dishes, tubes and textured boxes as triangles."""
+"""Visual meshes: turned dishes, tubes and textured boxes as triangles."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass

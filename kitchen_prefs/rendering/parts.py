@@ -89,5 +89,5 @@ def add_bar(
 
 
 def _add(body: mujoco.MjsBody, **attributes: object) -> None:
-    """Add a geom that is for the eye alone."""
+    """Add a visual geom, which nothing collides with."""
     body.add_geom(contype=0, conaffinity=0, mass=0.0, **attributes)

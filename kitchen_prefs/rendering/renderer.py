@@ -77,7 +77,7 @@ class Renderer:
         return np.ascontiguousarray(np.flipud(picture))  # OpenGL counts rows from below
 
     def close(self) -> None:
-        """Give the OpenGL context back."""
+        """Release the OpenGL context."""
         self._opengl.make_current()
         self._drawing.free()
         self._opengl.free()

@@ -150,7 +150,7 @@ def _add_tap(spec: mujoco.MjSpec) -> None:
 
 
 def _add_shelf(spec: mujoco.MjSpec) -> None:
-    """A shelf with two plants, for life."""
+    """A shelf with two plants."""
     back, z = COUNTER_Y[1] - 0.008, 1.46
     add_slab(spec, "shelf", "walnut", (0.05, back - 0.18, z), (0.85, back, z + 0.03))
     for number, (x, scale) in enumerate(((0.22, 1.0), (0.68, 0.75))):

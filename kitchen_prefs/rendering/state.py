@@ -1,9 +1,12 @@
-"""What a picture of the kitchen shows: plain numbers, no MuJoCo."""
+"""What a picture of the kitchen shows, in plain numbers: no MuJoCo is needed."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
+
+from kitchen_prefs.preferences import CATEGORIES
+from kitchen_prefs.simulation.kitchen import Kitchen, Location
 
 # A dish: its category, position (3,) m and quaternion (4,) wxyz in the world.
 SceneDish = tuple[str, np.ndarray, np.ndarray]
@@ -25,3 +28,22 @@ class SceneState:
     bottom_out: bool = False
     top_out: bool = False
     dishes: Sequence[SceneDish] = field(default_factory=tuple)
+
+
+def scene_of(kitchen: Kitchen, opened: bool = False) -> SceneState:
+    """A kitchen as a picture shows it.
+
+    Args:
+        kitchen: The kitchen.
+        opened: Show the door open and both racks pulled out whatever they are, so that the load is
+            in sight.
+    """
+    poses = kitchen.pose if opened else kitchen.pose_in_world()  # (n, 7)
+    dishes = tuple(
+        (CATEGORIES[kitchen.dishes.category[i]], pose[:3], pose[3:])
+        for i, pose in enumerate(poses)
+        if kitchen.location[i] != Location.NOT_ARRIVED
+    )
+    if opened:
+        return SceneState(door_open=True, bottom_out=True, top_out=True, dishes=dishes)
+    return SceneState(kitchen.door_open, kitchen.out == "bottom", kitchen.out == "top", dishes)

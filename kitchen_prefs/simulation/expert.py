@@ -38,7 +38,7 @@ class Option:
 
 
 class View(Protocol):
-    """What the expert acts upon: the kitchen itself, or what a policy sees of it."""
+    """What the expert acts upon: the kitchen itself, or a policy's observation of it."""
 
     door: int  # the choices that name the door, the racks and the sink
     racks: dict[str, int]
@@ -71,7 +71,7 @@ def choose(view: View, preference: Preference) -> int:
 
     Args:
         view: What the expert knows. The kitchen must not be finished.
-        preference: Whose dishwasher it is.
+        preference: The user's preference.
 
     Returns:
         The choice that names the chosen instance.
@@ -128,7 +128,7 @@ def placement_nearness() -> dict[str, list[Nearness]]:
 
 
 class KitchenView:
-    """The whole truth: the expert remembers what a closed rack holds."""
+    """The kitchen itself: the expert knows what a closed rack holds."""
 
     door = k.DOOR
     racks = k.RACK_INSTANCE
@@ -180,7 +180,7 @@ class KitchenView:
 
 @dataclass(frozen=True)
 class ExpertTrajectory:
-    """What the expert does from a start.
+    """The expert's decisions from a start.
 
     Attributes:
         decisions: The chosen instances.
@@ -198,7 +198,7 @@ def roll_out_expert(kitchen: Kitchen, preference: Preference) -> ExpertTrajector
 
     Args:
         kitchen: Any reachable state.
-        preference: Whose dishwasher it is.
+        preference: The user's preference.
 
     Returns:
         Its decisions and the finished kitchen.

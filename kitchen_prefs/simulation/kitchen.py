@@ -126,7 +126,7 @@ class Kitchen:
         self._table = placement_table()
         self._blocked = {rack: np.zeros(len(self._table.category), dtype=bool) for rack in RACKS}
 
-    # What can be seen ------------------------------------------------------------------------
+    # What is visible -------------------------------------------------------------------------
 
     def visible_dishes(self) -> np.ndarray:
         """The dishes on the counter or in the pulled-out rack, (k,) int."""

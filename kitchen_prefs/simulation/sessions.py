@@ -1,7 +1,8 @@
-"""What session i of a split is: whose dishwasher, which dishes, where they stand, which prompt.
+"""Session i of a split: its user, its dishes with their poses, and its prompts.
 
-A session is a pure function of (data version, split, salt, i). Salt 0 is published, others give
-fresh sessions. Each purpose draws from a generator of its own.
+A session is a pure function of (data version, split, salt, i). The salt is the session seed: 0
+gives the published sessions, any other natural number fresh ones. Each purpose draws from a
+generator of its own.
 """
 
 from dataclasses import dataclass
@@ -34,9 +35,9 @@ class Session:
     Attributes:
         split: Its split's name.
         index: Its number in the split.
-        salt: 0 for the published sessions.
-        person: Whose dishwasher it is, see `splits`.
-        preference: How this person likes it loaded.
+        salt: The session seed; 0 for the published sessions.
+        user: The number of its user, see `splits`.
+        preference: The user's preference.
         count: How many dishes are wanted per rack.
         dishes: The dishes, in the order in which they arrive.
     """
@@ -71,7 +72,7 @@ def make_session(split: str, index: int, salt: int = 0) -> Session:
     Args:
         split: A split's name.
         index: 0 <= index < the split's size.
-        salt: 0 gives the published session; any other natural number a fresh one.
+        salt: The session seed; 0 gives the published session.
 
     Returns:
         The session, the same in every process.
@@ -159,7 +160,7 @@ def preference_with(label: int) -> Preference:
 
 
 def _preference_of(user: int, salt: int) -> Preference:
-    """How a person likes it; those from 12 on are drawn anew for each salt."""
+    """A user's preference; those from 12 on are drawn anew for each salt."""
     return TWELVE[user] if user < len(TWELVE) else _other_preferences(salt)[user - len(TWELVE)]
 
 

@@ -1,4 +1,4 @@
-"""What knows nothing of the kitchen.
+"""Utilities that are independent of the kitchen.
 
 files        files and folders that are whole or not there
 hub          uploads to the Hugging Face hub

@@ -1,4 +1,4 @@
-"""Files that are either whole or not there, and folders that can be written."""
+"""Files and folders that are written atomically, and folders that can be written to."""
 
 import json
 from collections.abc import Iterator

@@ -1,4 +1,4 @@
-"""The Hugging Face hub: what goes there, and what goes wrong on the way, said in one sentence.
+"""Uploads to the Hugging Face hub, with the client's errors as one sentence each.
 
 The client, huggingface_hub, finds the token itself: that of `hf auth login`, or HF_TOKEN.
 """
@@ -47,14 +47,14 @@ def commit(
     description: str = "",
     create_pr: bool = False,
 ) -> CommitInfo:
-    """Put files into a repository in one commit, so that all of them arrive or none.
+    """Upload files to a repository in one commit, so that all of them arrive or none.
 
     Args:
         repo_id: The repository, OWNER/NAME.
         repo_type: "dataset" or "space".
-        files: What is put there, by the path in the repository.
-        message: What the commit says.
-        description: What it says at length.
+        files: The files, by their path in the repository.
+        message: The commit message.
+        description: The commit description.
         create_pr: Whether it goes into a new pull request.
     """
     return HfApi().create_commit(
@@ -69,7 +69,7 @@ def commit(
 
 @contextmanager
 def hub_errors(repo_id: str) -> Iterator[None]:
-    """Whatever the hub's client raises becomes an OSError of one sentence with the way out."""
+    """Turn the errors of the hub's client into an OSError of one sentence."""
     try:
         yield
     except HfHubHTTPError as error:

@@ -1,4 +1,4 @@
-"""Another command, run with a progress bar and a log."""
+"""Python modules run in processes of their own, with a progress bar and a log."""
 
 import os
 import re
@@ -10,45 +10,41 @@ from pathlib import Path
 from tqdm import tqdm
 
 # What tqdm prints: "Training:   5%|▌         | 50/1000 [00:12<03:50,  4.12step/s]".
-BAR = re.compile(r"[\w-]+: +\d+%\|.*?\| *\d+/\d+ \[.*?\]")
+PROGRESS_BAR = re.compile(r"[\w-]+: +\d+%\|.*?\| *\d+/\d+ \[.*?\]")
 
-# The loader works beside the training. Two threads that wait for each other on a core that a third
-# process wants took ten times as long.
+# A data loader works beside a training. With two threads each they compete for the cores: steps
+# took ten times as long when a third process was busy on one of two cores.
 ONE_THREAD = {"OMP_NUM_THREADS": "1"}
 
 
-def run_module(module: str, arguments: Sequence[str], log: Path, name: str) -> None:
-    """Run `python -m MODULE ARGUMENTS` in one thread.
+def run_module(module: str, arguments: Sequence[str], log: Path, title: str) -> None:
+    """Run `python -m MODULE ARGUMENTS` in one thread, and show the progress bar that it prints.
 
     Args:
         module: Such as "kitchen_prefs.cli".
-        arguments: What the module is told.
-        log: What the command says is appended to it, except its bars.
-        name: Stands before the command's own bars, which are shown in a line of their own.
+        arguments: The module's arguments.
+        log: Its output is appended to this file, except for progress bars.
+        title: Stands before the module's progress bar.
 
     Raises:
-        OSError: If the command fails; the message names the log.
+        OSError: If the module fails; the message names the log.
     """
-    process = start([sys.executable, "-m", module, *arguments])
-    assert process.stdout is not None
-    with log.open("a") as file, tqdm(desc=name, bar_format="{desc}", leave=False) as bar:
-        for line in process.stdout:  # a carriage return ends a line too
-            if shown := BAR.search(line):
-                bar.set_description_str(f"{name}, {shown.group()}")
-            if said := BAR.sub("", line).rstrip():  # what is logged follows on the bar's line
-                file.write(f"{said}\n")
-                file.flush()
-    if process.wait() != 0:
-        raise OSError(f"{module} failed; the end of {log} says why.")
-
-
-def start(command: list[str]) -> subprocess.Popen[str]:
-    """Start a command in one thread; all that it says comes out of one pipe."""
-    return subprocess.Popen(
-        command,
+    process = subprocess.Popen(
+        [sys.executable, "-m", module, *arguments],
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
-        text=True,
+        text=True,  # so that a carriage return, which ends a bar's line, ends a line here, too
         errors="replace",
         env=os.environ | ONE_THREAD,
     )
+    assert process.stdout is not None
+    with log.open("a") as file, tqdm(desc=title, bar_format="{desc}", leave=False) as bar:
+        for line in process.stdout:
+            if progress := PROGRESS_BAR.search(line):
+                bar.set_description_str(f"{title}, {progress.group()}")
+            # A log entry may follow on the bar's own line.
+            if text := PROGRESS_BAR.sub("", line).rstrip():
+                file.write(f"{text}\n")
+                file.flush()
+    if process.wait() != 0:
+        raise OSError(f"{module} failed; the end of {log} says why.")

@@ -11,6 +11,7 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
+from kitchen_prefs.evaluation.policy_options import ANY_SETTING, PolicyPath, PolicyType
 from kitchen_prefs.utils.files import make_folder
 from kitchen_prefs_leaderboard.submission_format import NOT_SAID
 
@@ -23,15 +24,8 @@ console = Console()
 
 Jobs = Annotated[int, typer.Option(help="How many processes, a core for each.", min=1)]
 CORES = os.cpu_count() or 1
-PolicyPath = Annotated[
-    str | None, typer.Option("--policy.path", help="A checkpoint's folder, or its hub name.")
-]
-PolicyType = Annotated[
-    str | None, typer.Option("--policy.type", help="A policy that needs no training.")
-]
 Verifications = Annotated[Path, typer.Option(help="The records of re-runs.")]
 KEPT = Path("leaderboard/verifications")
-ANY_SETTING = {"allow_extra_args": True, "ignore_unknown_options": True}
 
 
 class Form(StrEnum):

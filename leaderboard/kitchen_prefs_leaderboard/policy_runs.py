@@ -5,9 +5,9 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
-from kitchen_prefs.evaluation.commands import settings_of
 from kitchen_prefs.evaluation.episode_files import read_episodes, read_header
 from kitchen_prefs.evaluation.policy_loading import LoadedPolicy, load_policy
+from kitchen_prefs.evaluation.policy_options import settings_of
 from kitchen_prefs.metrics import Episode
 from kitchen_prefs.splits import TEST_SPLITS, get_split
 from kitchen_prefs.utils.processes import run_module

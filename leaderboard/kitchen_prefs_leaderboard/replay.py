@@ -84,8 +84,8 @@ def _written(
     near = all(abs(value) <= FARTHEST for value in rounded)
     if near and simulator.choose(rounded)[0] == instance:
         return rounded
-    row = simulator.seen.row_of(instance)
-    return [float(value) for value in simulator.seen.rows[row, instances.POSE]]
+    row = simulator.observation.row_of(instance)
+    return [float(value) for value in simulator.observation.rows[row, instances.POSE]]
 
 
 def to_jsonl(lines: Sequence[Line]) -> bytes:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Annotated
 
 from pydantic import Field, ValidationError
 
-from kitchen_prefs.envs.environment import FRESH_SALTS
+from kitchen_prefs.envs.session_choice import FRESH_SALTS
 from kitchen_prefs.metrics import Episode, Interval, mean_of_splits, score
 from kitchen_prefs.utils.files import write_json
 from kitchen_prefs_leaderboard.scoring import MEAN, Entry, difference, rounded

@@ -1,1 +1,8 @@
-"""What trains and compares policies: the quickstart, reinforcement learning, the paper's tables."""
+"""Trains and compares policies.
+
+recipes        the training recipes, YAML files
+lerobot_train  runs of lerobot-train on a recipe
+quickstart     `kitchen-prefs quickstart`: from nothing to a scored policy
+reinforcement  `kitchen-prefs reinforce`: PPO from the environment's rewards
+paper          `kitchen-prefs reproduce` and `kitchen-prefs results`: the paper's tables
+"""

@@ -25,8 +25,8 @@ def played_by_the_expert(split, index):
     for instance in expert_trajectory(simulator.session).decisions:
         refusal = "not yet"
         while refusal:
-            row = simulator.seen.row_of(instance)
-            refusal = simulator.decide(instance, simulator.seen.rows[row, instances.POSE])
+            row = simulator.observation.row_of(instance)
+            refusal = simulator.decide(instance, simulator.observation.rows[row, instances.POSE])
     return simulator.episode()
 
 

@@ -36,8 +36,8 @@ def played_carelessly(split, index):
     simulator = EpisodeSimulator(make_session(split, index))
 
     def decide(instance):
-        row = simulator.seen.row_of(instance)
-        return simulator.decide(instance, simulator.seen.rows[row, instances.POSE])
+        row = simulator.observation.row_of(instance)
+        return simulator.decide(instance, simulator.observation.rows[row, instances.POSE])
 
     for instance in (k.TOP_RACK, k.DOOR, k.TOP_RACK):
         decide(instance)

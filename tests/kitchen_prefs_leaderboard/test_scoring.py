@@ -35,7 +35,7 @@ def played_at_random(split, index, seed, jitter=0.0):
     simulator = EpisodeSimulator(make_session(split, index))
     generator = np.random.default_rng(seed)
     while not (simulator.terminated or simulator.truncated):
-        rows = simulator.seen.rows[instances.choosable(simulator.seen.rows)]
+        rows = simulator.observation.rows[instances.choosable(simulator.observation.rows)]
         pose = generator.choice(rows)[instances.POSE]
         simulator.act(pose + generator.normal(0, jitter, pose.shape))
     return simulator.episode()

@@ -47,35 +47,36 @@ def reproduce(
     make_folder(results, "--results")
     from kitchen_prefs_experiments.paper.figures import draw
     from kitchen_prefs_experiments.paper.learning_curves import run_curves
-    from kitchen_prefs_experiments.paper.result_files import write_facts
+    from kitchen_prefs_experiments.paper.result_files import write_results
     from kitchen_prefs_experiments.paper.table_runner import run_table
 
     for name, table in chosen.items():
-        if isinstance(table, Curves):
-            facts = run_curves(name, table)
-        else:
-            facts = run_table(name, table, budget, jobs, out)
-        write_facts(facts, results)
-        draw(table, facts, results / f"{name}.png")
+        found = (
+            run_curves(name, table)
+            if isinstance(table, Curves)
+            else run_table(name, table, budget, jobs, out)
+        )
+        write_results(found, results)
+        draw(table, found, results / f"{name}.png")
         typer.echo(f"{name} is in {results}.")
 
 
 @app.command("results")
-def write_results(results: Results = Path("docs/results")) -> None:
+def write_pages(results: Results = Path("docs/results")) -> None:
     """Write the pages and pictures of the results, from what the folder holds alone.
 
     For example:
     kitchen-prefs results
     """
     from kitchen_prefs_experiments.paper.figures import draw
-    from kitchen_prefs_experiments.paper.result_files import read_facts
+    from kitchen_prefs_experiments.paper.result_files import read_results
     from kitchen_prefs_experiments.paper.results_page import pages
 
     for name, text in pages(results).items():
         with atomic_file(results / f"{name}.md") as beside:
             beside.write_text(text)
-    for name, facts in read_facts(results).items():
-        draw(TABLES[name], facts, results / f"{name}.png")
+    for name, found in read_results(results).items():
+        draw(TABLES[name], found, results / f"{name}.png")
     typer.echo(f"The pages are in {results}; index.md is the overview.")
 
 

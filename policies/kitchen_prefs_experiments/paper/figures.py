@@ -6,6 +6,7 @@ from pathlib import Path
 import altair as alt
 
 from kitchen_prefs.utils.files import atomic_file
+from kitchen_prefs_experiments.paper.result_files import CurveResults, PolicyResults
 from kitchen_prefs_experiments.paper.table_types import Curves, Table
 
 PACKING_EFFICIENCY = "packing efficiency PE (share of the expert's)"
@@ -23,33 +24,38 @@ STEP = 14  # pixels between marks that stand side by side
 MIN_WIDTH = 560  # pixels, so that names of rows fit
 
 
-def draw(table: Table | Curves, facts: dict, file: Path) -> None:
+def draw(table: Table | Curves, results: PolicyResults | CurveResults, file: Path) -> None:
     """Draw a table.
 
     Args:
         table: What it holds, and the paper's figures.
-        facts: Its results, see `result_files`.
+        results: Its results, see `result_files`.
         file: The picture, a PNG file.
     """
-    chart = _curves(table, facts) if isinstance(table, Curves) else _table(table, facts)
+    if isinstance(table, Curves):
+        assert isinstance(results, CurveResults)
+        chart: alt.TopLevelMixin = _curves(table, results)
+    else:
+        assert isinstance(results, PolicyResults)
+        chart = _table(table, results)
     with atomic_file(file) as beside:
         chart.save(str(beside), scale_factor=2)
 
 
-def _table(table: Table, facts: dict) -> alt.LayerChart:
+def _table(table: Table, results: PolicyResults) -> alt.LayerChart:
     """The first metric.
 
     Along the axis stand the groups, with a mark for each row; or the rows, of a single group.
     """
     several = len(table.groups) > 1
-    ours = list(facts["rows"] if several else _drawn(table, facts))
-    places = list(table.groups if several else facts["rows"])
+    ours = list(results.rows if several else _drawn(table, results))
+    places = list(table.groups if several else results.rows)
     series = [*ours, *table.paper_values]
     width = max(MIN_WIDTH, STEP * len(places) * (len(series) + 1))
     title = f"{table.title}: mean and 95 % interval"
     if not several:
         title += f" on {table.groups[0]}"
-    chart = _marks([*_ours(table, facts), *_papers(table)], table, places, ours)
+    chart = _marks([*_ours(table, results), *_papers(table)], table, places, ours)
     return chart.properties(width=width, height=300, title=title)
 
 
@@ -76,25 +82,25 @@ def _marks(points: list[dict], table: Table, places: list[str], ours: list[str])
     return intervals + means
 
 
-def _drawn(table: Table, facts: dict) -> dict[str, str]:
+def _drawn(table: Table, results: PolicyResults) -> dict[str, str]:
     """The metrics of a single group that share the first one's axis, by what they are called."""
     first = table.metrics[0]
     metrics = [metric for metric in table.metrics if AXES.get(metric) == AXES[first]]
     if len(metrics) > 1:
         return {metric: metric for metric in metrics}
-    return {", ".join([*facts["recipes"], "our kitchen"]): first}
+    return {", ".join([*(results.recipes or ()), "our kitchen"]): first}
 
 
-def _ours(table: Table, facts: dict) -> Iterator[dict]:
+def _ours(table: Table, results: PolicyResults) -> Iterator[dict]:
     """Our means: where each stands, and in which series."""
-    for row, of_row in facts["rows"].items():
-        for group, of_group in of_row["groups"].items():
+    for row, of_row in results.rows.items():
+        for group, of_group in of_row.groups.items():
             if len(table.groups) > 1:
-                first = of_group["metrics"][table.metrics[0]]
-                yield {"place": group, "series": row, **first}
+                first = of_group.metrics[table.metrics[0]]
+                yield {"place": group, "series": row, **vars(first)}
             else:
-                for series, metric in _drawn(table, facts).items():
-                    yield {"place": row, "series": series, **of_group["metrics"][metric]}
+                for series, metric in _drawn(table, results).items():
+                    yield {"place": row, "series": series, **vars(of_group.metrics[metric])}
 
 
 def _papers(table: Table) -> Iterator[dict]:
@@ -105,9 +111,9 @@ def _papers(table: Table) -> Iterator[dict]:
             yield {"place": place, "series": series, **no_interval}
 
 
-def _curves(curves: Curves, facts: dict) -> alt.FacetChart:
+def _curves(curves: Curves, results: CurveResults) -> alt.FacetChart:
     """A panel for each metric: a line with its intervals as a band for each recipe."""
-    recipes = list(facts["rows"])
+    recipes = list(results.rows)
     colours = alt.Scale(domain=recipes, range=COLOURS[: len(recipes)])
     share = alt.Scale(domain=(0, 1))
     base = alt.Chart().encode(
@@ -118,17 +124,17 @@ def _curves(curves: Curves, facts: dict) -> alt.FacetChart:
         y=alt.Y("low:Q", title="mean and 95 % interval on val", scale=share), y2="high:Q"
     )
     means = base.mark_line(point=True).encode(y=alt.Y("mean:Q", scale=share))
-    panels = alt.layer(bands, means, data=alt.Data(values=list(_points(curves, facts))))
+    panels = alt.layer(bands, means, data=alt.Data(values=list(_points(curves, results))))
     return panels.properties(width=360, height=300).facet(
         column=alt.Column("metric:N", title=None, sort=list(curves.drawn)), title=curves.title
     )
 
 
-def _points(curves: Curves, facts: dict) -> Iterator[dict]:
+def _points(curves: Curves, results: CurveResults) -> Iterator[dict]:
     """The checkpoints' means: of which recipe and metric each is, and when it came."""
-    for recipe, curve in facts["rows"].items():
-        for point in curve["points"]:
-            minutes = point["seconds"] / 60
+    for recipe, curve in results.rows.items():
+        for point in curve.points:
+            minutes = point.seconds / 60
             for metric in curves.drawn:
-                interval = point["metrics"][metric]
-                yield {"recipe": recipe, "metric": metric, "minutes": minutes, **interval}
+                interval = point.metrics[metric]
+                yield {"recipe": recipe, "metric": metric, "minutes": minutes, **vars(interval)}

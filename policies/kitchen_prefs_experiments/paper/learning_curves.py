@@ -1,4 +1,4 @@
-"""The learning curves of the recipes: what each checkpoint is worth on val, and when it came."""
+"""The learning curves of the recipes: each checkpoint's metrics on val, against training time."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -8,12 +8,11 @@ from filelock import FileLock
 
 from kitchen_prefs.datasets import make_dataset
 from kitchen_prefs.evaluation.checkpoint_selection import select_checkpoint
-from kitchen_prefs_experiments.paper.result_files import make_facts
-from kitchen_prefs_experiments.paper.rows import BASE
-from kitchen_prefs_experiments.paper.runs import Run
+from kitchen_prefs_experiments.lerobot_train import TrainingRun
+from kitchen_prefs_experiments.paper.evaluated_policies import BASE
+from kitchen_prefs_experiments.paper.result_files import CheckpointResults, CurveResults, CurveRow
 from kitchen_prefs_experiments.paper.table_metrics import rounded
 from kitchen_prefs_experiments.paper.table_types import Curves
-from kitchen_prefs_experiments.paper.training import check_settings, run_training
 from kitchen_prefs_experiments.recipes import recipe_file
 
 RUNS = Path("outputs")  # where ttp_plus.yaml looks for the run that it goes on from
@@ -23,37 +22,35 @@ RUNS = Path("outputs")  # where ttp_plus.yaml looks for the run that it goes on 
 DECISIVE = ("dataset", "policy", "optimizer", "scheduler", "batch_size", "steps")
 
 
-def run_curves(name: str, curves: Curves) -> dict:
+def run_curves(name: str, curves: Curves) -> CurveResults:
     """Train the recipes that are not trained yet, and evaluate all their checkpoints on val.
 
-    The run of a recipe is RUNS/RECIPE, and its log RUNS/RECIPE.log. A finished run may be anyone's.
+    The run of a recipe is RUNS/RECIPE, and its log RUNS/RECIPE.log. A finished run may have been
+    started by any program.
 
     Args:
         name: The table's name.
         curves: Which recipes, and which metrics.
 
-    Returns:
-        The facts, as `facts` keeps them.
-
     Raises:
-        ValueError: If a run is not the recipe's, has no log, or is somebody else's and unfinished;
-            or if another run's episodes lie beside it.
+        ValueError: If a run is not the recipe's, has no log, or is an unfinished one of another
+            program; or if another run's episodes lie beside it.
         OSError: If lerobot-train fails; the message names its log.
     """
     for recipe in curves.rows:
-        _check(recipe, Run(RUNS / recipe))
+        _check(recipe, TrainingRun(RUNS / recipe))
     make_dataset(BASE.dataset)
-    rows: dict[str, dict] = {}
+    rows: dict[str, CurveRow] = {}
     for recipe, start in curves.rows.items():
-        earlier = rows[start]["seconds"] if start else 0
+        earlier = rows[start].seconds if start else 0
         rows[recipe] = _curve(recipe, earlier, curves.metrics)
-    return make_facts(name, rows, {})
+    return CurveResults.of_this_version(name, rows)
 
 
-def _check(recipe: str, run: Run) -> None:
+def _check(recipe: str, run: TrainingRun) -> None:
     """Raise a ValueError, before hours of work, if the run that is there cannot be used."""
     if not run.is_finished:
-        check_settings(run, recipe)
+        run.check_settings(recipe)
         return
     settings = yaml.safe_load(recipe_file(recipe).read_text())
     decisive = {name: settings[name] for name in DECISIVE if name in settings}
@@ -62,11 +59,11 @@ def _check(recipe: str, run: Run) -> None:
             f"The run {run.folder} and the recipe {recipe!r} differ in {' and '.join(differing)}; "
             "delete the run or move it elsewhere."
         )
-    run.seconds_a_step()  # raises if the log is missing
+    run.seconds_per_step()  # raises if the log is missing
 
 
 def _differing(settings: dict, config: dict) -> Iterator[str]:
-    """The settings that lerobot-train was told otherwise."""
+    """The names of the settings that have another value in a run's config."""
     for name, value in settings.items():
         if isinstance(value, dict):
             yield from (f"{name}.{one}" for one in _differing(value, config.get(name) or {}))
@@ -74,25 +71,25 @@ def _differing(settings: dict, config: dict) -> Iterator[str]:
             yield name
 
 
-def _curve(recipe: str, earlier: int, metrics: tuple[str, ...]) -> dict:
-    """The checkpoints of a recipe, which begins after some seconds of another one."""
-    run = Run(RUNS / recipe)
+def _curve(recipe: str, earlier: int, metrics: tuple[str, ...]) -> CurveRow:
+    """The checkpoints of a recipe, which starts after some seconds of another one."""
+    run = TrainingRun(RUNS / recipe)
     if not run.is_finished:
-        run_training(recipe, run, recipe)
-    each = run.seconds_a_step()
+        run.train(recipe, log_freq=1, title=recipe)
+    seconds_per_step = run.seconds_per_step()
     with FileLock(run.lock):
         selection = select_checkpoint(run.folder)
     points = [
-        {
-            "step": int(step),
-            "seconds": round(earlier + int(step) * each),
-            "metrics": {metric: rounded(of_step[metric]) for metric in metrics},
-        }
+        CheckpointResults(
+            step=int(step),
+            seconds=round(earlier + int(step) * seconds_per_step),
+            metrics={metric: rounded(of_step[metric]) for metric in metrics},
+        )
         for step, of_step in selection.metrics.items()
     ]
-    return {
-        "steps": points[-1]["step"],
-        "seconds": points[-1]["seconds"],
-        "best": int(selection.best.parent.name),
-        "points": points,
-    }
+    return CurveRow(
+        steps=points[-1].step,
+        seconds=points[-1].seconds,
+        best=int(selection.best.parent.name),
+        points=points,
+    )

@@ -5,8 +5,7 @@ The paper gives most of its figures as curves; only numbers that stand in its te
 
 from kitchen_prefs.splits import TEST_SPLITS
 from kitchen_prefs.utils.suggestions import suggest
-from kitchen_prefs_experiments.paper.evaluated_policies import Committed, FineTuning, Rule, Training
-from kitchen_prefs_experiments.paper.rows import (
+from kitchen_prefs_experiments.paper.evaluated_policies import (
     BASE,
     GNN_IL,
     GNN_RL,
@@ -14,6 +13,10 @@ from kitchen_prefs_experiments.paper.rows import (
     RULES,
     TTP,
     UNPROMPTED,
+    Committed,
+    FineTuning,
+    Rule,
+    Training,
     act,
     demonstrations,
     encoding,

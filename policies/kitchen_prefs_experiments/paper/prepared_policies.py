@@ -1,9 +1,10 @@
-"""Policies that are ready to be played: trained where they have to be."""
+"""Policies that are ready to be evaluated: trained where they have to be."""
 
 from dataclasses import dataclass
 from pathlib import Path
 
 from kitchen_prefs.datasets import make_dataset
+from kitchen_prefs_experiments.lerobot_train import TrainingRun
 from kitchen_prefs_experiments.paper.evaluated_policies import (
     Committed,
     FineTuning,
@@ -12,23 +13,23 @@ from kitchen_prefs_experiments.paper.evaluated_policies import (
     Training,
     numbered,
 )
-from kitchen_prefs_experiments.paper.training import seconds_of, train
+from kitchen_prefs_experiments.paper.result_files import PolicyDescription
 
 
 @dataclass(frozen=True)
-class Player:
-    """What `kitchen-prefs evaluate` plays.
+class PreparedPolicy:
+    """A policy that `kitchen-prefs evaluate` can load.
 
     Attributes:
-        source: Its options that say which policy it is.
-        folder: Keeps the work on it.
-        facts: Which policy it is, as `facts` keeps it.
+        options: The options of `evaluate` that name it.
+        folder: Keeps its run and its episodes.
+        description: What the results say of it.
         preference: The label of the preference whose sessions alone count; None for all.
     """
 
-    source: list[str]
+    options: list[str]
     folder: Path
-    facts: dict
+    description: PolicyDescription
     preference: int | None = None
 
     @property
@@ -37,8 +38,8 @@ class Player:
         return self.folder / "evaluation"
 
 
-def prepare(policy: Policy, budget: int) -> None:
-    """Make the data, find the checkpoint: what is missing is said before hours of work.
+def check(policy: Policy, budget: int) -> None:
+    """Make the data and find the checkpoint, so that what is missing shows before hours of work.
 
     Raises:
         ValueError: If a checkpoint is not there, or if the budget is too small.
@@ -49,15 +50,20 @@ def prepare(policy: Policy, budget: int) -> None:
             policy.steps(budget)
             make_dataset(policy.dataset)
         case FineTuning():
-            prepare(policy.start, budget)
+            check(policy.start, budget)
             for training in policy.trainings:
                 make_dataset(training.dataset)
         case Committed():
             policy.find()
 
 
-def players_of(policy: Policy, budget: int, out: Path) -> list[Player]:
-    """Train what a policy needs and is not there yet; a fine-tuning becomes several players.
+def prepare(policy: Policy, budget: int, out: Path) -> list[PreparedPolicy]:
+    """Train what a policy needs and is not there yet; a fine-tuning becomes several policies.
+
+    Args:
+        policy: The policy of a table's row.
+        budget: How many decisions each training sees.
+        out: Keeps the runs and the episodes.
 
     Raises:
         ValueError: If a checkpoint is not there, or if `out` holds another policy's work.
@@ -69,24 +75,49 @@ def players_of(policy: Policy, budget: int, out: Path) -> list[Player]:
             return [_trained(policy, budget, trained / policy.name)]
         case FineTuning():
             folder = trained / policy.start.name
-            start = train(policy.start, budget, folder)
+            start = train(policy.start, budget, folder).checkpoint
             return [
                 _trained(one, policy.budget, folder / policy.name / one.name, start)
                 for one in policy.trainings
             ]
         case Committed():
-            source = [f"--policy.path={policy.find()}", f"--prompts={policy.prompts}"]
+            options = [f"--policy.path={policy.find()}", f"--prompts={policy.prompts}"]
             folder = out / "checkpoints" / numbered(policy.name, policy.prompts)
-            return [Player(source, folder, {"checkpoint": policy.name})]
+            return [PreparedPolicy(options, folder, PolicyDescription(checkpoint=policy.name))]
         case Rule():
-            source = ["--policy.type=rules", f"--policy.rule={policy.name}"]
-            source.append(f"--prompts={policy.prompts}")
+            options = ["--policy.type=rules", f"--policy.rule={policy.name}"]
+            options.append(f"--prompts={policy.prompts}")
             folder = out / "rules" / numbered(policy.name, policy.prompts)
-            return [Player(source, folder, {"rule": policy.name})]
+            return [PreparedPolicy(options, folder, PolicyDescription(rule=policy.name))]
 
 
-def _trained(training: Training, budget: int, folder: Path, start: Path | None = None) -> Player:
-    source = [f"--policy.path={train(training, budget, folder, start)}"]
-    seconds = seconds_of(training, budget, folder)
-    facts = {"options": training.options(budget), "seconds": seconds}
-    return Player(source, folder, facts, training.preference)
+def train(training: Training, budget: int, folder: Path, start: Path | None = None) -> TrainingRun:
+    """Train, unless that is done already; a training that was stopped resumes.
+
+    Args:
+        training: The recipe, the data and the overridden settings.
+        budget: How many decisions it sees.
+        folder: Keeps the run.
+        start: The checkpoint whose weights it begins with; if not given, it begins with random
+            ones.
+
+    Raises:
+        ValueError: If the folder holds a run with other settings.
+        OSError: If lerobot-train fails; the message names the log.
+    """
+    run = TrainingRun(folder / "train")
+    options = [*training.options(budget), *([f"--policy.path={start}"] if start else [])]
+    # Every step is logged, so that even the shortest run says how long its steps take.
+    run.train(training.recipe, options, log_freq=1, title=training.name)
+    return run
+
+
+def _trained(
+    training: Training, budget: int, folder: Path, start: Path | None = None
+) -> PreparedPolicy:
+    run = train(training, budget, folder, start)
+    seconds = round(training.steps(budget) * run.seconds_per_step())
+    description = PolicyDescription(options=training.options(budget), seconds=seconds)
+    return PreparedPolicy(
+        [f"--policy.path={run.checkpoint}"], folder, description, training.preference
+    )

@@ -8,9 +8,16 @@ rows or columns in which all figures are equal become one sentence.
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
+from kitchen_prefs.metrics import Interval
 from kitchen_prefs.splits import TEST_SPLITS
 from kitchen_prefs_experiments.paper.paper_tables import TABLES
-from kitchen_prefs_experiments.paper.result_files import read_facts
+from kitchen_prefs_experiments.paper.result_files import (
+    CurveResults,
+    CurveRow,
+    PolicyResults,
+    PolicyRow,
+    read_results,
+)
 from kitchen_prefs_experiments.paper.table_types import Curves, Table
 
 OVERVIEW = "index"
@@ -34,12 +41,12 @@ def pages(folder: Path) -> dict[str, str]:
     Raises:
         ValueError: If a file is damaged.
     """
-    found = read_facts(folder)
+    found = read_results(folder)
     overview = {OVERVIEW: _overview(found, folder)}
     return overview | {name: _page(name, found, folder) for name in found}
 
 
-def _overview(found: Mapping[str, dict], folder: Path) -> str:
+def _overview(found: Mapping[str, PolicyResults | CurveResults], folder: Path) -> str:
     lines = [["table", "rows", "evaluated on"]]
     for name in found:
         title, rows = TABLES[name].title, " · ".join(TABLES[name].rows)
@@ -59,32 +66,34 @@ def _evaluated_on(name: str) -> str:
     return "the test splits" if splits == TEST_SPLITS else ", ".join(f"`{s}`" for s in splits)
 
 
-def _page(name: str, found: Mapping[str, dict], folder: Path) -> str:
-    table, facts = TABLES[name], found[name]
+def _page(name: str, found: Mapping[str, PolicyResults | CurveResults], folder: Path) -> str:
+    table, results = TABLES[name], found[name]
     parts = [f"# {table.title}", f"**In the paper.** {table.paper}"]
     if table.note:
         parts.append(f"**Here.** {table.note}")
     parts.append(f"![{table.title}]({name}.png)")
     parts += [*_prose(folder, name), "## Figures"]
     if isinstance(table, Curves):
-        parts.append(_by_recipe(table, facts["rows"]))
-    elif len(table.groups) == 1:
-        parts.append(_by_metric(table, facts["rows"]))
+        assert isinstance(results, CurveResults)
+        parts.append(_by_recipe(table, results.rows))
     else:
-        shown = _shown_before(name, found)
-        parts += _by_group(table, facts["rows"], shown)
-    parts += ["## Reproduce", _how_made(name, facts)]
+        assert isinstance(results, PolicyResults)
+        if len(table.groups) == 1:
+            parts.append(_by_metric(table, results.rows))
+        else:
+            parts += _by_group(table, results.rows, _shown_before(name, found))
+    parts += ["## Reproduce", _how_made(name, results)]
     return _joined(parts)
 
 
-def _shown_before(name: str, found: Mapping[str, dict]) -> dict[str, str]:
+def _shown_before(name: str, found: Mapping[str, PolicyResults | CurveResults]) -> dict[str, str]:
     """The rows of a table that an earlier page shows, label -> the name of that page."""
     shown: dict[str, str] = {}
     for earlier in found:
         if earlier == name:
             break
         if _groups(earlier) == _groups(name):
-            mine, theirs = found[name]["rows"], found[earlier]["rows"]
+            mine, theirs = found[name].rows, found[earlier].rows
             for label in mine.keys() & theirs.keys() - shown.keys():
                 shown[label] = earlier
     return shown
@@ -95,23 +104,22 @@ def _groups(name: str) -> tuple[str, ...]:
     return () if isinstance(table, Curves) else table.groups
 
 
-def _by_group(table: Table, rows: dict[str, dict], shown: Mapping[str, str]) -> Iterator[str]:
+def _by_group(table: Table, rows: dict[str, PolicyRow], shown: Mapping[str, str]) -> Iterator[str]:
     """A table for each metric: a row for each policy, a column for each group that has it."""
     if links := [f"[{row}]({shown[row]}.md)" for row in rows if row in shown]:
         yield f"To compare with, on other pages: {', '.join(links)}."
-    own = {row: facts for row, facts in rows.items() if row not in shown}
+    own = {label: row for label, row in rows.items() if label not in shown}
     for metric in table.metrics:
         yield f"### {metric}"
         yield from _of_metric(table, own, metric)
 
 
-def _of_metric(table: Table, rows: dict[str, dict], metric: str) -> Iterator[str]:
-    groups_of = {row: facts["groups"] for row, facts in rows.items()}
+def _of_metric(table: Table, rows: dict[str, PolicyRow], metric: str) -> Iterator[str]:
+    groups_of = {label: row.groups for label, row in rows.items()}
     any_row = next(iter(groups_of.values()))
-    groups = [group for group in table.groups if metric in any_row[group]["metrics"]]
+    groups = [group for group in table.groups if metric in any_row[group].metrics]
     lines = {
-        row: [_cell(of[group]["metrics"][metric]) for group in groups]
-        for row, of in groups_of.items()
+        row: [_cell(of[group].metrics[metric]) for group in groups] for row, of in groups_of.items()
     }
     constant = {row: cells[0] for row, cells in lines.items() if len({*cells}) == 1 < len(cells)}
     body = [[row, *cells] for row, cells in lines.items() if row not in constant]
@@ -119,58 +127,58 @@ def _of_metric(table: Table, rows: dict[str, dict], metric: str) -> Iterator[str
         for label, values in table.paper_values.items():
             body.append([label, *(_number(values.get(group)) for group in groups)])
     if body:
-        head = ["", *(f"{group} ({any_row[group]['episodes']})" for group in groups)]
+        head = ["", *(f"{group} ({any_row[group].episodes})" for group in groups)]
         yield _markdown([head, *body])
     if constant:
         cells = "; ".join(f"{row} {cell}" for row, cell in constant.items())
         yield f"The same in every column: {cells}."
 
 
-def _by_metric(table: Table, rows: dict[str, dict]) -> str:
+def _by_metric(table: Table, rows: dict[str, PolicyRow]) -> str:
     """One group: a row for each policy, a column for each metric and each of the paper's."""
     (group,) = table.groups
-    episodes = next(iter(rows.values()))["groups"][group]["episodes"]
+    episodes = next(iter(rows.values())).groups[group].episodes
     metrics = [f"{metric} on {group} ({episodes})" for metric in table.metrics]
     papers = [f"{table.metrics[0]}, {name}" for name in table.paper_values]
     lines = [[table.axis, *metrics, *papers]]
-    for row, facts in rows.items():
-        means = facts["groups"][group]["metrics"]
+    for label, row in rows.items():
+        means = row.groups[group].metrics
         cells = [_cell(means[metric]) for metric in table.metrics]
-        values = [_number(of.get(row)) for of in table.paper_values.values()]
-        lines.append([row, *cells, *values])
+        values = [_number(of.get(label)) for of in table.paper_values.values()]
+        lines.append([label, *cells, *values])
     return _markdown(lines)
 
 
-def _by_recipe(curves: Curves, rows: dict[str, dict]) -> str:
+def _by_recipe(curves: Curves, rows: dict[str, CurveRow]) -> str:
     """A row for each recipe: how long it was trained, and the metrics of its best checkpoint."""
     metrics = [f"{metric} at the best step" for metric in curves.drawn]
     lines = [["recipe", "steps", "minutes", "best step", *metrics]]
-    for recipe, facts in rows.items():
-        (best,) = [point for point in facts["points"] if point["step"] == facts["best"]]
-        cells = [_cell(best["metrics"][metric]) for metric in curves.drawn]
-        minutes = f"{facts['seconds'] / 60:.0f}"
-        lines.append([f"`{recipe}`", f"{facts['steps']:,}", minutes, f"{best['step']:,}", *cells])
+    for recipe, row in rows.items():
+        (best,) = [point for point in row.points if point.step == row.best]
+        cells = [_cell(best.metrics[metric]) for metric in curves.drawn]
+        minutes = f"{row.seconds / 60:.0f}"
+        lines.append([f"`{recipe}`", f"{row.steps:,}", minutes, f"{best.step:,}", *cells])
     return _markdown(lines)
 
 
-def _how_made(name: str, facts: dict) -> str:
-    """The command that made the facts, and under which conditions."""
-    versions = f"data version {facts['data_version']}, package {facts['package_version']}"
-    if "budget" not in facts:
+def _how_made(name: str, results: PolicyResults | CurveResults) -> str:
+    """The command that made the results, and under which conditions."""
+    versions = f"data version {results.data_version}, package {results.package_version}"
+    if not isinstance(results, PolicyResults) or results.budget is None:
         return f"`kitchen-prefs reproduce {name}` made the figures; {versions}."
-    seconds = list(_seconds(facts["rows"]))
-    recipes = " and ".join(f"`{recipe}`" for recipe in facts["recipes"])
+    seconds = list(_seconds(results.rows))
+    recipes = " and ".join(f"`{recipe}`" for recipe in results.recipes or ())
     return (
-        f"`kitchen-prefs reproduce {name} --budget={facts['budget']}` made the figures; "
-        f"{versions}. Each training from scratch saw {facts['budget']:,} decisions with the recipe "
+        f"`kitchen-prefs reproduce {name} --budget={results.budget}` made the figures; "
+        f"{versions}. Each training from scratch saw {results.budget:,} decisions with the recipe "
         f"{recipes}; the trainings took {min(seconds):,} to {max(seconds):,} s each."
     )
 
 
-def _seconds(rows: dict[str, dict]) -> Iterator[int]:
+def _seconds(rows: dict[str, PolicyRow]) -> Iterator[int]:
     """How long each training took; a row may stand for several."""
     for row in rows.values():
-        yield from (of["seconds"] for of in row.get("policies", [row]) if "seconds" in of)
+        yield from (of.seconds for of in row.policies or [row] if of.seconds is not None)
 
 
 def _prose(folder: Path, name: str) -> list[str]:
@@ -187,8 +195,8 @@ def _markdown(lines: list[list[str]]) -> str:
     return "\n".join(f"| {' | '.join(line)} |" for line in (header, ["---"] * len(header), *rows))
 
 
-def _cell(interval: dict[str, float]) -> str:
-    return f"{interval['mean']:.2f} [{interval['low']:.2f}, {interval['high']:.2f}]"
+def _cell(interval: Interval) -> str:
+    return f"{interval.mean:.2f} [{interval.low:.2f}, {interval.high:.2f}]"
 
 
 def _number(value: float | None) -> str:

@@ -1,4 +1,4 @@
-"""The metrics of a table's groups, from the lines that evaluations wrote."""
+"""The metrics of a table's groups, from the episodes that evaluations wrote."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict
@@ -15,30 +15,32 @@ from kitchen_prefs.metrics import (
     prompt_use,
     summarise,
 )
-from kitchen_prefs_experiments.paper.prepared_policies import Player
+from kitchen_prefs_experiments.paper.prepared_policies import PreparedPolicy
+from kitchen_prefs_experiments.paper.result_files import GroupResults
 from kitchen_prefs_experiments.paper.table_types import Table
 
 PLACES = ("in top", "in bottom", "in sink")  # what a place decision chooses among
+DIGITS = 4  # the bootstrap is good for three; a fourth keeps rounding errors out of them
 
 
-def measure_groups(table: Table, players: Sequence[Player]) -> dict[str, dict]:
+def measure_groups(table: Table, policies: Sequence[PreparedPolicy]) -> dict[str, GroupResults]:
     """Each group's number of episodes and its metrics.
 
     Args:
         table: Names the groups.
-        players: Those that were evaluated, each on the sessions that it is measured on.
+        policies: The evaluated policies of a row, each with the sessions that count for it.
 
     Raises:
         ValueError: If a line is not an episode.
     """
     groups = {}
-    of_split = {split: _episodes(players, split) for split in table.splits}
-    everything = list(chain.from_iterable(of_split.values()))
+    by_split = {split: _episodes(policies, split) for split in table.splits}
+    all_episodes = list(chain.from_iterable(by_split.values()))
     for count in table.counts:
-        of_count = [episode for episode in everything if episode.count == count]
-        groups[str(count)] = _group(of_count, _of_rollouts(of_count))
-    for split, episodes in of_split.items():
-        groups[split] = _group(episodes, _of_split(table, split, episodes, players))
+        of_count = [episode for episode in all_episodes if episode.count == count]
+        groups[str(count)] = _group(of_count, _rollout_metrics(of_count))
+    for split, episodes in by_split.items():
+        groups[split] = _group(episodes, _split_metrics(table, split, episodes, policies))
     return groups
 
 
@@ -52,45 +54,43 @@ def pick_accuracy(episode: Episode) -> float:
     return mean(float(kind == expert) for kind, expert in pairs if expert not in PLACES)
 
 
-def _episodes(players: Sequence[Player], name: str) -> list[Episode]:
+def rounded(interval: Interval) -> Interval:
+    """A mean and its interval as the result files hold them."""
+    return Interval(**{name: round(value, DIGITS) for name, value in asdict(interval).items()})
+
+
+def _episodes(policies: Sequence[PreparedPolicy], name: str) -> list[Episode]:
     """The episodes that count, in the order of the sessions, on which the bootstrap depends."""
     counted = [
         episode
-        for player in players
-        for episode in read_episodes(player.episodes / f"{name}.jsonl")
-        if player.preference in (None, episode.preference)
+        for policy in policies
+        for episode in read_episodes(policy.episodes / f"{name}.jsonl")
+        if policy.preference in (None, episode.preference)
     ]
     return sorted(counted, key=lambda episode: episode.session)
 
 
-def _of_split(
-    table: Table, split: str, episodes: Sequence[Episode], players: Sequence[Player]
+def _split_metrics(
+    table: Table, split: str, episodes: Sequence[Episode], policies: Sequence[PreparedPolicy]
 ) -> Iterator[tuple[str, Interval]]:
     """All metrics of a split that a table asks for; `Evaluator` names the files."""
-    yield from _of_rollouts(episodes)
+    yield from _rollout_metrics(episodes)
     if split in table.prompt_use:
-        swapped = _episodes(players, f"{split}-other-prompt")
+        swapped = _episodes(policies, f"{split}-other-prompt")
         yield "PE, other prompt", summarise(swapped, packing_efficiency)
         yield "Prompt use", prompt_use(episodes, swapped)
     if table.asks_for_accuracy:
-        beside_expert = _episodes(players, f"{split}-expert-states")
-        yield "Category accuracy", summarise(beside_expert, category_accuracy)
-        yield "Pick accuracy", summarise(beside_expert, pick_accuracy)
+        on_expert_states = _episodes(policies, f"{split}-expert-states")
+        yield "Category accuracy", summarise(on_expert_states, category_accuracy)
+        yield "Pick accuracy", summarise(on_expert_states, pick_accuracy)
 
 
-def _of_rollouts(episodes: Sequence[Episode]) -> Iterator[tuple[str, Interval]]:
+def _rollout_metrics(episodes: Sequence[Episode]) -> Iterator[tuple[str, Interval]]:
     for name, metric in METRICS.items():
         yield name, summarise(episodes, metric)
 
 
-def _group(episodes: Sequence[Episode], metrics: Iterator[tuple[str, Interval]]) -> dict:
-    return {
-        "episodes": len(episodes),
-        "metrics": {name: rounded(interval) for name, interval in metrics},
-    }
-
-
-def rounded(interval: Interval) -> dict[str, float]:
-    """A mean and its interval, rounded to what can be told."""
-    # The bootstrap tells no more than three digits; a fourth keeps rounding out of them.
-    return {name: round(value, 4) for name, value in asdict(interval).items()}
+def _group(episodes: Sequence[Episode], metrics: Iterator[tuple[str, Interval]]) -> GroupResults:
+    return GroupResults(
+        episodes=len(episodes), metrics={name: rounded(interval) for name, interval in metrics}
+    )

@@ -11,6 +11,7 @@ from kitchen_prefs_experiments.recipes import recipe_file
 if TYPE_CHECKING:
     from kitchen_prefs.evaluation.evaluator import Summary
     from kitchen_prefs.metrics import Episode
+    from kitchen_prefs_experiments.lerobot_train import TrainingRun
 
 app = typer.Typer()
 
@@ -41,22 +42,32 @@ def quickstart(
     make_dataset(TRAINING_DATA)
 
     typer.echo(f"2/4  Training: lerobot-train with the recipe {RECIPE}")
-    from kitchen_prefs_experiments.quickstart.training import read_log, train
+    from kitchen_prefs_experiments.lerobot_train import TrainingRun
 
-    run = out / "train"
-    checkpoint = train(RECIPE, run)
+    run = TrainingRun(out / "train")
+    _train(run)
 
     typer.echo("3/4  Rollouts in the kitchen, sessions and preferences that training has not seen")
-    summaries, shown = _evaluate(checkpoint, out)
+    summaries, shown = _evaluate(run.checkpoint, out)
 
     typer.echo("4/4  Table and pictures")
     from kitchen_prefs_experiments.quickstart.report import write_learning_curve, write_table
 
     typer.echo(f"\n{write_table(summaries, out)}")
-    write_learning_curve(read_log(run), _log_freq(checkpoint), out / "learning_curve.png")
+    write_learning_curve(run.log_entries(), run.config["log_freq"], out / "learning_curve.png")
     _draw(shown, out)
     typer.echo(f"The table, the learning curve and the pictures are in {out}.")
-    typer.echo(_next_steps(checkpoint))
+    typer.echo(_next_steps(run.checkpoint))
+
+
+def _train(run: "TrainingRun") -> None:
+    """Train the recipe, unless that is done; a run that was stopped starts anew.
+
+    If it resumed, its log would hold some steps twice, and the learning curve with it.
+    """
+    if not run.is_finished:
+        run.delete()
+        run.train(RECIPE)
 
 
 def _draw(episode: "Episode", out: Path) -> None:
@@ -87,12 +98,6 @@ def _evaluate(checkpoint: Path, out: Path) -> tuple[dict[str, dict[str, "Summary
     }
     split, session = SHOWN
     return summaries, evaluators["TTP"].episodes(split)[session]
-
-
-def _log_freq(checkpoint: Path) -> int:
-    from lerobot.configs.train import TrainPipelineConfig
-
-    return TrainPipelineConfig.from_pretrained(checkpoint).log_freq
 
 
 def _next_steps(checkpoint: Path) -> str:

@@ -7,7 +7,7 @@ import altair as alt
 from kitchen_prefs.evaluation.evaluator import Summary
 from kitchen_prefs.splits import DATA_VERSION
 from kitchen_prefs.utils.files import write_json
-from kitchen_prefs_experiments.quickstart.training import Logged
+from kitchen_prefs_experiments.lerobot_train import LogEntry
 
 COLUMNS = ("PE", "ED_c", "TE", "Score")
 COLOURS = {"all decisions": "#b5533c", "pick decisions": "#2f6f73", "place decisions": "#c9a13b"}
@@ -44,13 +44,13 @@ def write_table(summaries: dict[str, dict[str, Summary]], folder: Path) -> str:
     return table
 
 
-def write_learning_curve(logged: list[Logged], log_freq: int, file: Path) -> None:
+def write_learning_curve(entries: list[LogEntry], log_freq: int, file: Path) -> None:
     """Draw loss and accuracies over training steps."""
-    steps = [(i + 1) * log_freq for i in range(len(logged))]
-    loss = {"all decisions": [entry.loss for entry in logged]}
+    steps = [(i + 1) * log_freq for i in range(len(entries))]
+    loss = {"all decisions": [entry.loss for entry in entries]}
     accuracy = {
-        "pick decisions": [entry.pick_accuracy for entry in logged],
-        "place decisions": [entry.place_accuracy for entry in logged],
+        "pick decisions": [entry.pick_accuracy for entry in entries],
+        "place decisions": [entry.place_accuracy for entry in entries],
     }
     alt.hconcat(
         _curves(steps, loss, "cross-entropy of the expert's choice (nats)"),

@@ -1,1 +1,9 @@
-"""Learning from rewards: a policy that scores rows plays in the kitchen and improves by PPO."""
+"""`kitchen-prefs reinforce`: a policy that scores rows learns from rewards, by PPO.
+
+configuration       the policy and the constants of PPO
+row_actions         the environment whose actions are rows of the instance set
+ppo                 stable-baselines3's PPO around a LeRobot policy
+trainer             trains, and resumes what was stopped
+checkpoint_writing  checkpoints as lerobot-train lays them out
+commands            the command
+"""

@@ -9,16 +9,18 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
+from kitchen_prefs.evaluation.policy_options import ANY_SETTING
+
 app = typer.Typer()
 console = Console()
 
 
-@app.command(context_settings={"allow_extra_args": True, "ignore_unknown_options": True})
+@app.command(context_settings=ANY_SETTING)
 def reinforce(
     context: typer.Context,
     out: Annotated[Path, typer.Option(help="The folder of checkpoints and logs.")],
     interactions: Annotated[
-        int, typer.Option(help="How many decisions are played in all.", min=1)
+        int, typer.Option(help="How many decisions in all.", min=1)
     ] = 32_000,  # the paper's budget
     recipe: Annotated[
         str, typer.Option(help="A recipe of reinforcement learning, by name.")
@@ -29,7 +31,7 @@ def reinforce(
 ) -> None:
     """Train a policy by PPO from the paper's rewards, on the sessions of train (open track).
 
-    A command that was stopped goes on; so does a finished one that is given more --interactions.
+    A command that was stopped resumes; so does a finished one that is given more --interactions.
     The checkpoints are LeRobot's: evaluate and select take them, tensorboard reads OUT/tensorboard.
     Any other --SETTING=VALUE overrides a setting of the recipe.
 
@@ -40,15 +42,15 @@ def reinforce(
     """
     from lerobot.utils.import_utils import register_third_party_plugins
 
-    from kitchen_prefs_experiments.reinforcement.settings import read_settings
-    from kitchen_prefs_experiments.reinforcement.training import reinforce as train
+    from kitchen_prefs_experiments.reinforcement.configuration import read_args
+    from kitchen_prefs_experiments.reinforcement.trainer import reinforce as train
 
     register_third_party_plugins()
-    pace = train(read_settings(recipe, context.args), interactions, mask, out)
+    pace = train(read_args(recipe, context.args), interactions, mask, out)
     if pace.interactions:
         console.print(
             f"{pace.interactions} decisions in {pace.seconds:.0f} s: "
             f"{pace.interactions / pace.seconds:.0f} a second, "
-            f"{pace.interactions / pace.playing:.0f} while playing."
+            f"{pace.interactions / pace.rollout_seconds:.0f} in rollouts alone."
         )
     console.print(f"The checkpoint is {out}/checkpoints/last/pretrained_model.")

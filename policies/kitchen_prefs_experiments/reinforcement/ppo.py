@@ -19,11 +19,23 @@ from torch import Tensor, nn
 
 from kitchen_prefs.envs.lerobot_env import FEATURES_MAP
 from kitchen_prefs.instances import CAPACITY
-from kitchen_prefs_experiments.reinforcement.settings import Settings
+from kitchen_prefs_experiments.reinforcement.configuration import Args
+
+# The arguments of stable-baselines3's PPO that `Args` holds under the same names.
+PPO_CONSTANTS = (
+    "learning_rate",
+    "n_steps",
+    "batch_size",
+    "n_epochs",
+    "gamma",
+    "gae_lambda",
+    "clip_range",
+    "ent_coef",
+)
 
 
 class RowScores(Protocol):
-    """What a policy makes of B sets: a score for every row, (B, N), and a summary, (B, d)."""
+    """A policy's output for B sets: a score for every row, (B, N), and a summary, (B, d)."""
 
     @property
     def scores(self) -> Tensor:
@@ -42,7 +54,7 @@ class RowScorer(Protocol):
         """The size d of a summary."""
 
     def score_rows(self, batch: dict[str, Tensor], failed: Tensor) -> RowScores:
-        """Judge the rows of sets, none of which has failed before."""
+        """Score the rows of sets, none of which has failed before."""
 
 
 class RowScoresExtractor(BaseFeaturesExtractor):
@@ -54,7 +66,7 @@ class RowScoresExtractor(BaseFeaturesExtractor):
         self.policy = policy
 
     def forward(self, observations: dict[str, Tensor]) -> Tensor:
-        """Judge what B environments show."""
+        """Score the observations of B environments."""
         batch = {FEATURES_MAP[key]: value for key, value in observations.items()}
         nothing = torch.zeros_like(observations["instances"][..., 0], dtype=torch.bool)  # (B, N)
         row_scores = self.policy.score_rows(batch, nothing)
@@ -106,34 +118,27 @@ class MaskedRowPolicy(_ScoresAreLogits, MaskableActorCriticPolicy):  # type: ign
 
 
 def make_learner(
-    settings: Settings, policy: RowScorer, environments: VecEnv, seed: int, masked: bool
+    args: Args, policy: RowScorer, environments: VecEnv, seed: int, masked: bool
 ) -> PPO | MaskablePPO:
     """Make PPO for a policy.
 
     Args:
-        settings: PPO's constants.
-        policy: What learns.
-        environments: Where it plays.
-        seed: Of the sessions and choices.
+        args: PPO's constants.
+        policy: The policy that learns.
+        environments: Its environments.
+        seed: The seed of the sessions and choices.
         masked: Whether infeasible decisions are masked.
     """
-    constants: dict[str, Any] = {
-        "learning_rate": settings.learning_rate,
-        "n_steps": settings.steps,
-        "batch_size": settings.batch_size,
-        "n_epochs": settings.epochs,
-        "gamma": settings.discount,
-        "gae_lambda": settings.gae_lambda,
-        "clip_range": settings.clip_range,
-        "ent_coef": settings.entropy,
+    constants: dict[str, Any] = {name: getattr(args, name) for name in PPO_CONSTANTS}
+    constants |= {
         "seed": seed,
-        "device": settings.policy.device or "cpu",
+        "device": args.policy.device or "cpu",
         "policy_kwargs": {
             "features_extractor_class": RowScoresExtractor,
             "features_extractor_kwargs": {"policy": policy},
             "ortho_init": False,  # the network begins as it does in imitation
             # stable-baselines3's epsilon for PPO, and the recipe's weight decay
-            "optimizer_kwargs": {"eps": 1e-5, "weight_decay": settings.weight_decay},
+            "optimizer_kwargs": {"eps": 1e-5, "weight_decay": args.weight_decay},
         },
     }
     if masked:

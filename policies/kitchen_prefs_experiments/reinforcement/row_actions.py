@@ -11,7 +11,7 @@ from kitchen_prefs.envs.episode_simulator import LIMIT_FACTOR
 from kitchen_prefs.metrics import packing_efficiency
 from kitchen_prefs.simulation.sessions import expert_trajectory
 
-# The sessions that demonstrations are of, so that imitation and reinforcement see the same people
+# The sessions that demonstrations are of, so that imitation and reinforcement see the same users
 # and dishes.
 SPLIT, SALT = "train", 0
 SHOWN = ("instances", "preference")  # not the prompt: its megabytes would fill the memory of PPO
@@ -22,7 +22,7 @@ class RowActions(gymnasium.Wrapper):
     """`DishwasherLoading` on the privileged track, whose actions are rows of the instance set.
 
     A row that the decision may not choose, padding included, changes nothing, counts as a decision
-    and is as forbidden as what the kitchen refuses. At an episode's end `info["PE"]` is its packing
+    and is refused, as what the kitchen refuses. At an episode's end `info["PE"]` is its packing
     efficiency.
     """
 
@@ -60,6 +60,6 @@ class RowActions(gymnasium.Wrapper):
     def action_masks(self) -> np.ndarray:
         """The rows that the kitchen would carry out, (N,) bool; sb3-contrib asks for them.
 
-        An oracle: which dishes block which placements is not told to any policy that is evaluated.
+        An oracle: no evaluated policy observes which dishes block which placements.
         """
-        return self.env.feasible_rows()
+        return self.env.simulator.feasible_rows()

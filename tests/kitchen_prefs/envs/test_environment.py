@@ -27,7 +27,7 @@ def play_expert(env, observation):
     """Let the expert act through poses; yields the row it chooses and what each step returns."""
     terminated = False
     while not terminated:
-        action = env.expert_action()
+        action = env.simulator.expert_action()
         row, _ = nearest_row(instances.unpad(observation["instances"]), action)
         observation, _, terminated, _, _ = step = env.step(action)
         yield row, step
@@ -37,7 +37,7 @@ def pose_of(env, observation, instance):
     """The action that chooses an instance."""
     rows = instances.unpad(observation["instances"])
     poses = rows[instances.choosable(rows), instances.POSE]
-    return next(pose for pose in poses if env.instance_of(pose) == instance)
+    return next(pose for pose in poses if env.simulator.choose(pose)[0] == instance)
 
 
 def test_gymnasium_accepts_it():
@@ -224,8 +224,8 @@ def test_any_pose_takes_the_nearest_row(action):
     row, distance = nearest_row(rows, action)
     assert instances.choosable(rows)[row]
     assert distance >= 0
-    taken = env.instance_of(action)
-    assert env.instance_of(rows[row, instances.POSE]) == taken
+    taken = env.simulator.choose(action)[0]
+    assert env.simulator.choose(rows[row, instances.POSE])[0] == taken
     assert env.step(action)[-1]["distance"] == pytest.approx(distance)
     assert env.episode().decisions == (taken,)
 

@@ -53,7 +53,7 @@ def play(decisions, session=SESSION):
     for instance in decisions:
         rows = instances.unpad(observation["instances"])
         poses = rows[instances.choosable(rows), instances.POSE]
-        action = next(pose for pose in poses if env.instance_of(pose) == instance)
+        action = next(pose for pose in poses if env.simulator.choose(pose)[0] == instance)
         observation, *_, info = env.step(action)
     assert env.episode().decisions == tuple(decisions)
     assert info["is_success"] == success(env.episode())

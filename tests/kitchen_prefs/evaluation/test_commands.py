@@ -172,6 +172,39 @@ def test_truncated_files_of_a_checkpoint_are_refused(tmp_path):
         file.write_bytes(whole)
 
 
+@pytest.mark.parametrize(
+    ("program", "error"),
+    [
+        (ACTPolicy, AttributeError),
+        (ACTPolicy, KeyError),
+        (ACTPolicy, TypeError),
+        (ACTConfig, AttributeError),  # draccus hides a TypeError itself
+        (ACTConfig, KeyError),
+    ],
+)
+def test_a_mistake_in_a_policy_is_not_taken_for_a_damaged_checkpoint(
+    tmp_path, monkeypatch, error, program
+):
+    checkpoint, cause = save_act(tmp_path), error("ours")
+
+    def broken(*_, **__):
+        raise cause
+
+    monkeypatch.setattr(program, "__post_init__" if program is ACTConfig else "__init__", broken)
+    with pytest.raises(error) as caught:
+        load_policy(str(checkpoint))
+    assert caught.value is cause
+    assert "broken" in {entry.name for entry in caught.traceback}
+
+
+@pytest.mark.parametrize("steps", [None, 3, [None], ["normalizer_processor"]])
+def test_steps_that_are_none_are_refused(tmp_path, steps):
+    file = save_act(tmp_path) / "policy_preprocessor.json"
+    rewrite(file, lambda processor: processor.update(steps=steps))
+    with pytest.raises(ValueError, match=r"policy_preprocessor\.json is damaged"):
+        load_policy(str(tmp_path))
+
+
 def test_a_checkpoint_of_an_unknown_type_is_answered_with_the_nearest(tmp_path):
     checkpoint = save_act(tmp_path)
     config = json.loads((checkpoint / "config.json").read_text())

@@ -1,4 +1,4 @@
-"""The learning curves: when each checkpoint came, and what report and picture show of it."""
+"""The learning curves: when each checkpoint came, and what page and figure show of it."""
 
 import json
 import re
@@ -12,12 +12,13 @@ from PIL import Image
 
 from kitchen_prefs.evaluation.checkpoint_selection import Selection
 from kitchen_prefs.metrics import METRICS, Interval
-from kitchen_prefs_experiments.paper import learning_curves, training
+from kitchen_prefs_experiments import lerobot_train
+from kitchen_prefs_experiments.paper import learning_curves
 from kitchen_prefs_experiments.paper.figures import COLOURS, draw
 from kitchen_prefs_experiments.paper.learning_curves import run_curves
 from kitchen_prefs_experiments.paper.paper_tables import TABLES
-from kitchen_prefs_experiments.paper.result_files import write_facts
-from kitchen_prefs_experiments.paper.results_page import report
+from kitchen_prefs_experiments.paper.result_files import write_results
+from kitchen_prefs_experiments.paper.results_page import pages
 from kitchen_prefs_experiments.recipes import recipe_file
 
 CURVES = TABLES["learning"]
@@ -28,10 +29,10 @@ LOGGED = "INFO ot_train.py:641 step:{} loss:2.1 updt_s:0.400 data_s:0.100 smp/s:
 class Machine:
     """Stands in for lerobot-train and for the selection of a checkpoint."""
 
-    told: list
+    calls: list
 
-    def train(self, module, arguments, log, name):
-        self.told.append(list(arguments))
+    def train(self, module, arguments, log, title):
+        self.calls.append(list(arguments))
         run = Path(arguments[-1].removeprefix("--output_dir="))
         save(run, 400)
         with log.open("a") as file:
@@ -82,8 +83,8 @@ def machine(tmp_path, monkeypatch):
 
     machine = Machine([])
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(training, "run_module", machine.train)
-    for module in (training, learning_curves):
+    monkeypatch.setattr(lerobot_train, "run_module", machine.train)
+    for module in (lerobot_train, learning_curves):
         monkeypatch.setattr(module, "recipe_file", shortened)
     monkeypatch.setattr(learning_curves, "make_dataset", lambda name: None)
     monkeypatch.setattr(learning_curves, "select_checkpoint", machine.select)
@@ -92,7 +93,7 @@ def machine(tmp_path, monkeypatch):
 
 def test_each_recipe_is_trained_where_the_next_one_looks_for_it(machine, tmp_path):
     run_curves("learning", CURVES)
-    assert machine.told == [
+    assert machine.calls == [
         [
             f"--config_path={tmp_path}/{recipe}.yaml",
             "--log_freq=1",
@@ -104,35 +105,35 @@ def test_each_recipe_is_trained_where_the_next_one_looks_for_it(machine, tmp_pat
 
 
 def test_a_checkpoint_comes_after_the_seconds_of_its_steps_and_of_what_it_goes_on_from(machine):
-    rows = run_curves("learning", CURVES)["rows"]
-    seconds = {recipe: [p["seconds"] for p in row["points"]] for recipe, row in rows.items()}
+    rows = run_curves("learning", CURVES).rows
+    seconds = {recipe: [p.seconds for p in row.points] for recipe, row in rows.items()}
     assert seconds == {"ttp_quick": [100, 200], "ttp_plus": [300, 400], "ttp_paper": [100, 200]}
-    assert rows["ttp_plus"]["steps"] == rows["ttp_plus"]["best"] == 400
-    assert set(rows["ttp_plus"]["points"][0]["metrics"]) == {"Score", "PE", "ED_c"}
+    assert rows["ttp_plus"].steps == rows["ttp_plus"].best == 400
+    assert set(rows["ttp_plus"].points[0].metrics) == {"Score", "PE", "ED_c"}
 
 
 def test_what_is_there_is_not_trained_again_and_what_was_stopped_goes_on(machine):
     run_curves("learning", CURVES)
     save(Path("outputs/ttp_paper"), 200)
-    machine.told.clear()
-    rows = run_curves("learning", CURVES)["rows"]
+    machine.calls.clear()
+    rows = run_curves("learning", CURVES).rows
     last = Path("outputs/ttp_paper/checkpoints/last/pretrained_model/train_config.json")
-    assert machine.told == [
+    assert machine.calls == [
         [f"--config_path={last}", "--resume=true", "--output_dir=outputs/ttp_paper"]
     ]
     # Twice 400 steps stand in the log, but only 400 led to the last checkpoint.
-    assert rows["ttp_paper"]["seconds"] == 200
+    assert rows["ttp_paper"].seconds == 200
 
 
-def test_a_finished_run_of_the_recipe_is_anyones(machine):
+def test_a_finished_run_of_the_recipe_may_be_of_any_program(machine):
     save(Path("outputs/ttp_quick"), 400)
     Path("outputs/ttp_quick.log").write_text(LOGGED.format(400))
-    assert run_curves("learning", CURVES)["rows"]["ttp_quick"]["seconds"] == 200
-    assert len(machine.told) == 2
+    assert run_curves("learning", CURVES).rows["ttp_quick"].seconds == 200
+    assert len(machine.calls) == 2
 
 
 @pytest.mark.parametrize("step", [0, 200])
-def test_a_run_that_somebody_else_began_is_left_alone(machine, step):
+def test_a_run_of_another_program_is_left_alone(machine, step):
     theirs = Path("outputs/ttp_paper")
     theirs.mkdir(parents=True)
     if step:
@@ -140,7 +141,7 @@ def test_a_run_that_somebody_else_began_is_left_alone(machine, step):
     with pytest.raises(ValueError, match=r"ttp_paper is a run .* let it finish or delete it"):
         run_curves("learning", CURVES)
     assert theirs.exists()
-    assert not machine.told
+    assert not machine.calls
 
 
 @pytest.mark.parametrize(
@@ -156,7 +157,7 @@ def test_a_finished_run_with_other_settings_is_not_the_recipes(machine, told, di
     Path("outputs/ttp_plus.log").write_text(LOGGED.format(400))
     with pytest.raises(ValueError, match=f"the recipe 'ttp_plus' differ in {differing}; delete"):
         run_curves("learning", CURVES)
-    assert not machine.told
+    assert not machine.calls
 
 
 def test_what_is_not_decisive_may_differ(machine):
@@ -181,15 +182,15 @@ def test_a_finished_run_without_its_log_is_named_before_anything_is_trained(mach
     save(Path("outputs/ttp_plus"), 400)
     with pytest.raises(ValueError, match=r"outputs/ttp_plus\.log does not say how long"):
         run_curves("learning", CURVES)
-    assert not machine.told
+    assert not machine.calls
 
 
-def test_the_report_tells_minutes_and_the_best_step(machine, tmp_path):
-    write_facts(run_curves("learning", CURVES), tmp_path)
-    text = report(tmp_path)
+def test_the_page_has_the_minutes_and_the_best_step(machine, tmp_path):
+    write_results(run_curves("learning", CURVES), tmp_path)
+    text = pages(tmp_path)["learning"]
     assert "| recipe | steps | minutes | best step | PE at the best step |" in text
     assert "| `ttp_plus` | 400 | 7 | 400 | 0.40 [0.30, 0.50] | 0.40 [0.30, 0.50] |" in text
-    assert "Made by `kitchen-prefs reproduce learning`; data version" in text
+    assert "`kitchen-prefs reproduce learning` made the figures; data version" in text
 
 
 def test_the_picture_has_a_line_for_each_recipe(machine, tmp_path):

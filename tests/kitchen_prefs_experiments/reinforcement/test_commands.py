@@ -27,19 +27,19 @@ from kitchen_prefs_experiments.reinforcement.checkpoint_writing import (
     restore,
     save_checkpoint,
 )
+from kitchen_prefs_experiments.reinforcement.configuration import Args, read_args
 from kitchen_prefs_experiments.reinforcement.ppo import make_learner
 from kitchen_prefs_experiments.reinforcement.row_actions import RowActions
-from kitchen_prefs_experiments.reinforcement.settings import Settings, read_settings
-from kitchen_prefs_experiments.reinforcement.training import make_policy
+from kitchen_prefs_experiments.reinforcement.trainer import make_policy
 from lerobot_policy_kitchen_prefs.ttp import TTPConfig
 
 # A small network that plays 32 decisions between two updates.
 TINY = (
     "--policy.dim=8",
-    "--environments=2",
-    "--steps=16",
+    "--num_envs=2",
+    "--n_steps=16",
     "--batch_size=16",
-    "--epochs=2",
+    "--n_epochs=2",
     "--save_freq=32",
 )
 
@@ -90,7 +90,7 @@ def test_the_expert_s_rows_earn_its_rewards_and_pack_everything():
     environment.reset(seed=3)
     earned, done = [], False
     while not done:
-        action = environment.env.expert_action()
+        action = environment.env.simulator.expert_action()
         _, reward, done, truncated, info = environment.step(row_of(environment, action))
         earned.append(reward)
         assert not truncated
@@ -136,7 +136,7 @@ def test_the_mask_is_what_the_kitchen_would_carry_out(seed):
             carried_out = not deepcopy(environment).step(row)[4]["refusal"]
             assert mask[row] == carried_out
             refused += not carried_out
-        environment.step(row_of(environment, environment.env.expert_action()))
+        environment.step(row_of(environment, environment.env.simulator.expert_action()))
     assert refused > 25  # closed racks, the door, blocked placements
 
 
@@ -145,7 +145,7 @@ def test_the_mask_is_what_the_kitchen_would_carry_out(seed):
 
 @pytest.mark.parametrize("masked", [False, True])
 def test_masked_choices_are_never_refused_and_others_are(masked):
-    settings = read_settings("gnn_rl", TINY)
+    args = read_args("gnn_rl", TINY)
     refusals = []
 
     class Spied(RowActions):
@@ -155,16 +155,16 @@ def test_masked_choices_are_never_refused_and_others_are(masked):
             return result
 
     torch.manual_seed(0)
-    environments = DummyVecEnv([Spied] * settings.environments)
-    make_learner(settings, make_policy(settings), environments, seed=0, masked=masked).learn(64)
+    environments = DummyVecEnv([Spied] * args.num_envs)
+    make_learner(args, make_policy(args), environments, seed=0, masked=masked).learn(64)
     assert len(refusals) == 64
     assert any(refusals) == (not masked)
 
 
 def test_only_what_a_decision_may_choose_has_a_chance():
-    settings = read_settings("gnn_rl", TINY)
-    environments = DummyVecEnv([RowActions] * settings.environments)
-    learner = make_learner(settings, make_policy(settings), environments, seed=0, masked=False)
+    args = read_args("gnn_rl", TINY)
+    environments = DummyVecEnv([RowActions] * args.num_envs)
+    learner = make_learner(args, make_policy(args), environments, seed=0, masked=False)
     environments.reset()
     for _ in range(8):
         observation, _ = learner.policy.obs_to_tensor(environments.envs[0]._seen)
@@ -173,7 +173,7 @@ def test_only_what_a_decision_may_choose_has_a_chance():
         )
         sets = environments.envs[0]._seen["instances"]
         np.testing.assert_equal(chances > 0, instances.choosable(sets))
-        environments.step([int(np.flatnonzero(chances)[-1])] * settings.environments)
+        environments.step([int(np.flatnonzero(chances)[-1])] * args.num_envs)
 
 
 def test_a_run_goes_on_and_learns(trained):
@@ -189,13 +189,13 @@ def test_a_run_goes_on_and_learns(trained):
 
 
 def test_what_goes_on_is_what_was_saved(tmp_path):
-    settings = read_settings("gnn_rl", TINY)
+    args = read_args("gnn_rl", TINY)
 
     def learner_of(policy):
-        environments = DummyVecEnv([lambda: Monitor(RowActions())] * settings.environments)
-        return make_learner(settings, policy, environments, seed=0, masked=False)
+        environments = DummyVecEnv([lambda: Monitor(RowActions())] * args.num_envs)
+        return make_learner(args, policy, environments, seed=0, masked=False)
 
-    policy = make_policy(settings)
+    policy = make_policy(args)
     learner = learner_of(policy).learn(32)
     save_checkpoint(tmp_path, learner, policy)
     drawn = torch.rand(3)
@@ -235,18 +235,18 @@ def test_evaluate_plays_the_export_on_the_privileged_track(trained, tmp_path):
 @pytest.mark.parametrize(
     ("option", "message"),
     [
-        ("--steps=20", "save_freq is a multiple .* 40; 32 is not"),
+        ("--n_steps=20", "save_freq is a multiple .* 40; 32 is not"),
         ("--batch_size=12", "batch_size divides .* 32; 12 does not"),
-        ("--environments=0", "environments is 0; it must be at least 1"),
+        ("--num_envs=0", "num_envs is 0; it must be at least 1"),
         ("--policy.n_heads=0", "n_heads is 0; it must be at least 1"),
         ("--interactions=33", "updates of 32; give a multiple of that, not 33"),
-        ("--epoch=3", "no setting 'epoch'.*'epochs'"),
+        ("--n_epoch=3", "no setting 'n_epoch'.*'n_epochs'"),
         ("--policy.failures=true", "failures"),
         ("--recipe=ttp_quick", "ttp_quick"),
     ],
 )
 def test_what_cannot_be_done_is_refused(tmp_path, option, message):
-    settings = ("--batch_size=8",) if option == "--steps=20" else ()
+    settings = ("--batch_size=8",) if option == "--n_steps=20" else ()
     with pytest.raises(ValueError, match=message):
         reinforce(tmp_path, 32, *settings, option)
     assert not list(tmp_path.iterdir())
@@ -254,7 +254,7 @@ def test_what_cannot_be_done_is_refused(tmp_path, option, message):
 
 def test_a_policy_that_scores_no_rows_is_named():
     with pytest.raises(ValueError, match="'ttp' scores no rows"):
-        make_policy(Settings(policy=TTPConfig(device="cpu")))
+        make_policy(Args(policy=TTPConfig(device="cpu")))
 
 
 def test_somebody_else_s_run_is_left_alone(trained, tmp_path):

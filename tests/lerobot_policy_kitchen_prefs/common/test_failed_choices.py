@@ -34,10 +34,10 @@ class RandomRollout:
         rows = np.flatnonzero(instances.choosable(self.set))
         row = self.generator.choice(rows)
         if self.generator.random() < 0.3:
-            expert = self.environment.expert_action()
+            expert = self.environment.simulator.expert_action()
             row = rows[(self.set[rows, POSE] == expert).all(axis=1)][0]
         choice = self.set[row]
-        instance = self.environment.instance_of(choice[POSE])
+        instance = self.environment.simulator.choose(choice[POSE])[0]
         observation, _, _, _, info = self.environment.step(choice[POSE])
         self.set = observation["instances"]
         self.failed = self.failed | {instance} if info["refusal"] else set()
@@ -45,7 +45,7 @@ class RandomRollout:
         return choice
 
     def instances(self, marks):
-        return {self.environment.instance_of(row[POSE]) for row in self.set[marks]}
+        return {self.environment.simulator.choose(row[POSE])[0] for row in self.set[marks]}
 
 
 def test_what_the_kitchen_refused_is_marked_until_something_succeeds():

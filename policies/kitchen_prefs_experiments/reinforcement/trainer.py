@@ -1,4 +1,4 @@
-"""Trains a policy by PPO, and goes on where a training was stopped."""
+"""Trains a policy by PPO, and resumes a training that was stopped."""
 
 import json
 from dataclasses import dataclass
@@ -30,9 +30,9 @@ from kitchen_prefs_experiments.reinforcement.checkpoint_writing import (
     restore,
     save_checkpoint,
 )
+from kitchen_prefs_experiments.reinforcement.configuration import Args
 from kitchen_prefs_experiments.reinforcement.ppo import make_learner
 from kitchen_prefs_experiments.reinforcement.row_actions import RowActions
-from kitchen_prefs_experiments.reinforcement.settings import Settings
 
 SETTINGS = "settings.json"
 
@@ -42,96 +42,94 @@ class Pace:
     """How fast a training was.
 
     Attributes:
-        interactions: Decisions that were played.
-        seconds: What they took, learning included.
-        playing: What playing alone took, in s.
+        interactions: The number of decisions.
+        seconds: How long they took, learning included.
+        rollout_seconds: How long the rollouts alone took.
     """
 
     interactions: int
     seconds: float
-    playing: float
+    rollout_seconds: float
 
 
-def reinforce(settings: Settings, interactions: int, masked: bool, run: Path) -> Pace:
-    """Train until a number of interactions; a run that was stopped, or had fewer, goes on.
+def reinforce(args: Args, interactions: int, masked: bool, run: Path) -> Pace:
+    """Train until a number of interactions; a run that was stopped, or had fewer, resumes.
 
     Args:
-        settings: The recipe.
-        interactions: How many decisions are played in all.
+        args: The recipe.
+        interactions: The number of decisions in all.
         masked: Whether infeasible decisions are masked.
         run: The output folder.
 
     Returns:
-        How fast it was; nothing was played if the run had as many interactions already.
+        How fast it was; it has no interactions if the run had as many already.
 
     Raises:
         ValueError: If the folder holds a run with other settings, if the policy cannot learn from
-            rewards, or if as many interactions cannot be played.
+            rewards, or if the interactions are not a multiple of an update's.
         OSError: If the folder cannot be written.
     """
-    told = json.loads(json.dumps({"masked": masked, **draccus.encode(settings)}))
+    settings = json.loads(json.dumps({"masked": masked, **draccus.encode(args)}))
     checkpoint = last_checkpoint(run)
-    if interactions % settings.rollout:
+    if interactions % args.rollout_size:
         raise ValueError(
-            f"Interactions come in updates of {settings.rollout:,}; give a multiple of that, not "
+            f"Interactions come in updates of {args.rollout_size:,}; give a multiple of that, not "
             f"{interactions:,}."
         )
-    if checkpoint and _told_before(run) != told:
+    if checkpoint and _settings_of(run) != settings:
         raise ValueError(
             f"{run} is a run of another command or with other settings; give another --out or "
             "delete it."
         )
-    learner, policy = _begin(settings, masked, checkpoint)
+    learner, policy = _begin(args, masked, checkpoint)
     make_folder(run, "--out")
-    write_json(run / SETTINGS, told)
+    write_json(run / SETTINGS, settings)
     learner.set_logger(configure(str(run / "tensorboard"), ["tensorboard"]))
     begun, start = learner.num_timesteps, perf_counter()
     watch = Watch(interactions)
     while learner.num_timesteps < interactions:
-        more = min(settings.save_freq, interactions - learner.num_timesteps)
+        more = min(args.save_freq, interactions - learner.num_timesteps)
         learner.learn(more, callback=watch, reset_num_timesteps=False)
         save_checkpoint(run, learner, policy)
     watch.close()
-    return Pace(learner.num_timesteps - begun, perf_counter() - start, watch.playing)
+    return Pace(learner.num_timesteps - begun, perf_counter() - start, watch.rollout_seconds)
 
 
-def make_policy(settings: Settings) -> Any:
-    """Make a recipe's policy, which has learned nothing yet.
+def make_policy(args: Args) -> Any:
+    """Make a recipe's policy, with random weights.
 
     Raises:
         ValueError: If it is of a type that cannot learn from rewards.
     """
-    policy_class: Any = get_policy_class(settings.policy.type)
+    policy_class: Any = get_policy_class(args.policy.type)
     if not hasattr(policy_class, "score_rows"):
         raise ValueError(
-            f"{settings.policy.type!r} scores no rows, so it cannot learn from rewards; take 'gnn'."
+            f"{args.policy.type!r} scores no rows, so it cannot learn from rewards; take 'gnn'."
         )
     features = features_of("privileged")
-    settings.policy.input_features = {OBS_INSTANCES: features["instances"]}
-    settings.policy.output_features = {ACTION: PolicyFeature(FeatureType.ACTION, (7,))}
-    return policy_class(settings.policy).to(settings.policy.device)
+    args.policy.input_features = {OBS_INSTANCES: features["instances"]}
+    args.policy.output_features = {ACTION: PolicyFeature(FeatureType.ACTION, (7,))}
+    return policy_class(args.policy).to(args.policy.device)
 
 
-def _told_before(run: Path) -> dict | None:
-    """What a run was begun with; None if it was not `reinforce` that began it."""
+def _settings_of(run: Path) -> dict | None:
+    """The settings that a run was started with; None if it is not one of `reinforce`."""
     file = run / SETTINGS
     return json.loads(file.read_text()) if file.exists() else None
 
 
-def _begin(
-    settings: Settings, masked: bool, checkpoint: Path | None
-) -> tuple[PPO | MaskablePPO, Any]:
+def _begin(args: Args, masked: bool, checkpoint: Path | None) -> tuple[PPO | MaskablePPO, Any]:
     """The learner and its policy, new or as a checkpoint left them."""
     done = interactions_of(checkpoint) if checkpoint else 0
-    set_seed(settings.seed)
-    policy = _saved_policy(checkpoint) if checkpoint else make_policy(settings)
+    set_seed(args.seed)
+    policy = _saved_policy(checkpoint) if checkpoint else make_policy(args)
     # They run in this process: a decision takes a tenth of a millisecond, asking another process
     # as long.
     environments = DummyVecEnv(
-        [lambda: Monitor(RowActions(), info_keywords=("PE",))] * settings.environments
+        [lambda: Monitor(RowActions(), info_keywords=("PE",))] * args.num_envs
     )
-    # Another seed than at the beginning: a run that goes on meets other sessions first.
-    learner = make_learner(settings, policy, environments, settings.seed + done, masked)
+    # Another seed than at the start: a run that resumes meets other sessions first.
+    learner = make_learner(args, policy, environments, args.seed + done, masked)
     if checkpoint:
         restore(checkpoint, learner)
     return learner, policy
@@ -140,17 +138,17 @@ def _begin(
 def _saved_policy(checkpoint: Path) -> Any:
     folder = pretrained_model(checkpoint)
     policy = read_policy(folder, read_config(folder, []))
-    policy.config.pretrained_path = None  # where it lay on this machine is nobody's business
+    policy.config.pretrained_path = None  # a path of this machine
     return policy
 
 
 class Watch(BaseCallback):
-    """A progress bar, how long playing takes, and packing efficiency in the log."""
+    """A progress bar, how long rollouts take, and packing efficiency in the log."""
 
     def __init__(self, interactions: int) -> None:
         """Know how many interactions there will be."""
         super().__init__()
-        self.playing = 0.0
+        self.rollout_seconds = 0.0
         self._interactions = interactions
         self._bar: tqdm | None = None
 
@@ -177,6 +175,6 @@ class Watch(BaseCallback):
         return True
 
     def _on_rollout_end(self) -> None:
-        self.playing += perf_counter() - self._start
+        self.rollout_seconds += perf_counter() - self._start
         efficiencies = [episode["PE"] for episode in self.model.ep_info_buffer or ()]
         self.logger.record("rollout/packing_efficiency", safe_mean(efficiencies))
