@@ -156,7 +156,7 @@ def check_actions(episode, again):
     simulator = EpisodeSimulator(make_session(episode.split, episode.session))
     for given, written in zip(episode.actions, again.actions, strict=True):
         instance = simulator.choose(given)[0]
-        pose = simulator.observation.rows[simulator.observation.row_of(instance), POSE]
+        pose = simulator.observation.rows[simulator.observation.row_of(instance), instances.POSE]
         assert np.allclose(written, given, atol=5.1e-5, rtol=0) or np.array_equal(written, pose)
         simulator.decide(instance, written)
 
