@@ -154,10 +154,10 @@ def test_a_strangers_name_is_printed_as_it_is(entry):
 def check_actions(episode, again):
     """An action is written rounded, or, where rounding chooses another row, as its row's pose."""
     simulator = EpisodeSimulator(make_session(episode.split, episode.session))
-    for given, written in zip(episode.actions, again.actions, strict=True):
-        instance = simulator.choose(given)[0]
+    for action, written in zip(episode.actions, again.actions, strict=True):
+        instance = simulator.choose(action)[0]
         pose = simulator.observation.rows[simulator.observation.row_of(instance), instances.POSE]
-        assert np.allclose(written, given, atol=5.1e-5, rtol=0) or np.array_equal(written, pose)
+        assert np.allclose(written, action, atol=5.1e-5, rtol=0) or np.array_equal(written, pose)
         simulator.decide(instance, written)
 
 
