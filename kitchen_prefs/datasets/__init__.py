@@ -4,11 +4,11 @@ names         the grammar of the names, and where a data set lies
 columns       what a frame holds, and the content fingerprint
 writing       LeRobot's files, written on all cores
 manifest      what a data set says about itself
-making        make on demand, and load
+loading       make on demand, and load
 verification  everything a data set must satisfy
 cards         a card for each data set
-pushing       to the Hugging Face hub
-recording     fingerprints and cards of the published data sets
+hub_upload    to the Hugging Face hub
+publishing    fingerprints and cards of the published data sets
 commands      `kitchen-prefs datasets`
 """
 

@@ -1,6 +1,5 @@
 """Make data sets on demand, and load them."""
 
-import shutil
 import warnings
 from concurrent.futures import BrokenExecutor
 from pathlib import Path
@@ -10,6 +9,7 @@ from filelock import FileLock
 
 from kitchen_prefs.datasets.manifest import published_fingerprint, read_manifest
 from kitchen_prefs.datasets.names import Content, content_of, dataset_root
+from kitchen_prefs.utils.files import atomic_folder
 
 if TYPE_CHECKING:
     from lerobot.datasets import LeRobotDataset
@@ -78,10 +78,5 @@ def make_dataset(name: str, workers: int | None = None) -> Path:
 def _make(content: Content, root: Path, workers: int | None) -> None:
     from kitchen_prefs.datasets.writing import write_dataset  # imports LeRobot, which takes seconds
 
-    unfinished = root.with_name(f".{root.name}.unfinished")
-    shutil.rmtree(unfinished, ignore_errors=True)  # of a process that was killed
-    try:
+    with atomic_folder(root) as unfinished:
         write_dataset(content, unfinished, workers)
-        unfinished.rename(root)
-    finally:
-        shutil.rmtree(unfinished, ignore_errors=True)

@@ -63,7 +63,7 @@ def write_dataset(content: Content, root: Path, workers: int | None = None) -> N
 
     Args:
         content: Which sessions to demonstrate.
-        root: A folder that does not exist yet.
+        root: Its folder, which is empty or does not exist yet.
         workers: How many processes; None takes all cores.
 
     Raises:

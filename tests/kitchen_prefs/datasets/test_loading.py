@@ -344,7 +344,7 @@ def test_a_script_that_has_used_torchs_threads_makes_a_data_set(home):
 @pytest.mark.lerobot
 def test_after_a_kill_the_data_set_is_made_anew(home):
     process = _make_elsewhere(LARGE, home)
-    unfinished = dataset_root(LARGE).with_name(f".{LARGE}.unfinished")
+    unfinished = dataset_root(LARGE).with_name(f".unfinished-{LARGE}")
     while not unfinished.exists():
         assert process.poll() is None
         time.sleep(0.05)
