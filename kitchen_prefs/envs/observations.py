@@ -12,10 +12,21 @@ import numpy as np
 
 from kitchen_prefs import instances
 from kitchen_prefs.preferences import CATEGORIES, RACKS, plural
-from kitchen_prefs.simulation import kitchen as k
 from kitchen_prefs.simulation import layout
 from kitchen_prefs.simulation.expert import placement_nearness
-from kitchen_prefs.simulation.kitchen import Kitchen, Location, placement_table, rack_position
+from kitchen_prefs.simulation.kitchen import (
+    BOTTOM_RACK,
+    DOOR,
+    FIRST_DISH,
+    FIRST_PLACEMENT,
+    SINK,
+    SINK_POSE,
+    TOP_RACK,
+    Kitchen,
+    Location,
+    placement_table,
+    rack_position,
+)
 
 EXTENT_NOISE = 0.05  # standard deviation, relative (design of the `noisy` split)
 POSITION_NOISE = 0.01  # standard deviation, m
@@ -91,7 +102,7 @@ class Observer:
         extents, position = self._perceive()
         objects = self._object_rows(dishes, extents, position)  # (3 + d, 13)
         places, place_ids = self._place_rows(extents)  # (p, 13)
-        ids = np.concatenate([OBJECT_IDS, k.FIRST_DISH + dishes, place_ids])
+        ids = np.concatenate([OBJECT_IDS, FIRST_DISH + dishes, place_ids])
         rows = np.concatenate([objects, places])  # (n, 13)
         rows[:, instances.DECISION] = self._decision
         order = self._order.permutation(len(rows))
@@ -146,11 +157,11 @@ class Observer:
         rows = np.zeros((len(placements) + 1, instances.COLUMNS), dtype=np.float32)
         rows[:, instances.EXTENTS] = extents[kitchen.held]
         rows[:, instances.IS_PLACE] = 1
-        rows[-1, instances.POSE] = k.SINK_POSE
+        rows[-1, instances.POSE] = SINK_POSE
         if kitchen.out is None:
-            return rows, np.array([k.SINK])
+            return rows, np.array([SINK])
         rows[:-1, instances.POSE] = placement_table().pose[kitchen.out][placements]
-        return rows, np.append(k.FIRST_PLACEMENT[kitchen.out] + placements, k.SINK)
+        return rows, np.append(FIRST_PLACEMENT[kitchen.out] + placements, SINK)
 
     def _joints(self) -> np.ndarray:
         kitchen = self._kitchen
@@ -209,7 +220,7 @@ def _door_pose(angle: float) -> tuple[float, ...]:
 EXTENTS = np.array(
     [layout.EXTENTS[category] for category in CATEGORIES], dtype=np.float32
 )  # (7, 3)
-OBJECT_IDS = np.array([k.DOOR, k.BOTTOM_RACK, k.TOP_RACK])
+OBJECT_IDS = np.array([DOOR, BOTTOM_RACK, TOP_RACK])
 DOOR_ROWS = [_object_row(layout.DOOR_SIZE, _door_pose(a)) for a in (0, layout.DOOR_OPEN_ANGLE)]
 RACK_ROWS = {
     rack: [

@@ -1,9 +1,15 @@
 """The paper's dense reward (appendix "Reward function for GNN-RL")."""
 
 from kitchen_prefs.preferences import CATEGORIES, Preference
-from kitchen_prefs.simulation import kitchen as k
 from kitchen_prefs.simulation.expert import KitchenView, choose
-from kitchen_prefs.simulation.kitchen import Kitchen, Location, decision_kind
+from kitchen_prefs.simulation.kitchen import (
+    FIRST_DISH,
+    FIRST_PLACEMENT,
+    SINK,
+    Kitchen,
+    Location,
+    decision_kind,
+)
 
 
 def reward(view: KitchenView, preference: Preference, instance: int) -> float:
@@ -23,16 +29,16 @@ def reward(view: KitchenView, preference: Preference, instance: int) -> float:
     kitchen = view.kitchen
     if kitchen.held is not None:
         return float(_fits_preferred_rack(kitchen, preference, instance))
-    if instance < k.FIRST_DISH or kitchen.location[instance - k.FIRST_DISH] != Location.COUNTER:
+    if instance < FIRST_DISH or kitchen.location[instance - FIRST_DISH] != Location.COUNTER:
         return 0.0
     called_for = decision_kind(choose(view, preference), kitchen.dishes)
     return float(decision_kind(instance, kitchen.dishes) == called_for)
 
 
 def _fits_preferred_rack(kitchen: Kitchen, preference: Preference, instance: int) -> bool:
-    if kitchen.out is None or instance == k.SINK:
+    if kitchen.out is None or instance == SINK:
         return False
     category = int(kitchen.dishes.category[kitchen.held])
-    placement = instance - k.FIRST_PLACEMENT[kitchen.out]
+    placement = instance - FIRST_PLACEMENT[kitchen.out]
     free = (kitchen.free(kitchen.out, category) == placement).any()
     return bool(free) and preference.rack_of[CATEGORIES[category]] == kitchen.out

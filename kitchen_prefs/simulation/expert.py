@@ -15,9 +15,18 @@ from typing import Protocol
 import numpy as np
 
 from kitchen_prefs.preferences import CATEGORIES, RACKS, Preference
-from kitchen_prefs.simulation import kitchen as k
 from kitchen_prefs.simulation import layout
-from kitchen_prefs.simulation.kitchen import Kitchen, placement_table, rack_position
+from kitchen_prefs.simulation.kitchen import (
+    DOOR,
+    FIRST_DISH,
+    FIRST_PLACEMENT,
+    RACK_INSTANCE,
+    SINK,
+    Kitchen,
+    decision_kind,
+    placement_table,
+    rack_position,
+)
 
 Nearness = tuple[float, ...]
 
@@ -130,9 +139,9 @@ def placement_nearness() -> dict[str, list[Nearness]]:
 class KitchenView:
     """The kitchen itself: the expert knows what a closed rack holds."""
 
-    door = k.DOOR
-    racks = k.RACK_INSTANCE
-    sink = k.SINK
+    door = DOOR
+    racks = RACK_INSTANCE
+    sink = SINK
 
     def __init__(self, kitchen: Kitchen) -> None:
         self.kitchen = kitchen
@@ -157,7 +166,7 @@ class KitchenView:
     def waiting(self) -> list[Option]:
         """The dishes on the counter."""
         return [
-            Option(self._categories[dish], self._nearness[dish], k.FIRST_DISH + dish)
+            Option(self._categories[dish], self._nearness[dish], FIRST_DISH + dish)
             for dish in self.kitchen.counter.tolist()
         ]
 
@@ -167,7 +176,7 @@ class KitchenView:
         assert kitchen.held is not None
         assert kitchen.out is not None
         category = kitchen.dishes.category[kitchen.held]
-        nearness, first = placement_nearness()[kitchen.out], k.FIRST_PLACEMENT[kitchen.out]
+        nearness, first = placement_nearness()[kitchen.out], FIRST_PLACEMENT[kitchen.out]
         return [
             Option(CATEGORIES[category], nearness[placement], first + placement)
             for placement in kitchen.free(kitchen.out, category).tolist()
@@ -209,5 +218,5 @@ def roll_out_expert(kitchen: Kitchen, preference: Preference) -> ExpertTrajector
         decisions.append(choose(view, preference))
         refusal = kitchen.decide(decisions[-1])
         assert not refusal, f"The expert chose what the kitchen refuses: {refusal}"
-    kinds = tuple(k.decision_kind(instance, kitchen.dishes) for instance in decisions)
+    kinds = tuple(decision_kind(instance, kitchen.dishes) for instance in decisions)
     return ExpertTrajectory(tuple(decisions), kinds, kitchen)

@@ -15,12 +15,12 @@ from kitchen_prefs.envs.environment import MAX_EPISODE_STEPS, TASK, DishwasherLo
 from kitchen_prefs.envs.episode_simulator import LIMIT_FACTOR
 from kitchen_prefs.envs.lerobot_env import KitchenPrefsEnv
 from kitchen_prefs.metrics import edit_similarity, packing_efficiency
-from kitchen_prefs.simulation import kitchen as k
 from kitchen_prefs.simulation import layout
+from kitchen_prefs.simulation.kitchen import BOTTOM_RACK, DOOR, FIRST_DISH, TOP_RACK
 from kitchen_prefs.simulation.sessions import expert_trajectory, make_session
 from kitchen_prefs.splits import SPLITS, TEST_SPLITS
 
-JOINTS = (k.DOOR, k.BOTTOM_RACK, k.TOP_RACK)
+JOINTS = (DOOR, BOTTOM_RACK, TOP_RACK)
 
 
 def play_expert(env, observation):
@@ -159,7 +159,7 @@ def test_it_ends_at_twice_the_experts_decisions():
     env = DishwasherLoading("seen")
     observation, _ = env.reset(seed=0)
     limit = LIMIT_FACTOR * len(expert_trajectory(env.session).decisions)
-    rack = pose_of(env, observation, k.BOTTOM_RACK)
+    rack = pose_of(env, observation, BOTTOM_RACK)
     for step in range(1, limit + 1):
         _, reward, terminated, truncated, info = env.step(rack)
         assert not terminated
@@ -210,7 +210,7 @@ def test_some_picks_fail_under_noise():
     failed = 0
     for index in range(60):
         observation, _ = env.reset(options={"session": index})
-        info = env.step(pose_of(env, observation, k.FIRST_DISH))[-1]
+        info = env.step(pose_of(env, observation, FIRST_DISH))[-1]
         failed += info["refusal"] == "The grasp failed."
     assert 0 < failed < 12
 

@@ -21,8 +21,14 @@ from kitchen_prefs.metrics import (
     temporal_efficiency,
 )
 from kitchen_prefs.preferences import CATEGORIES, RACKS
-from kitchen_prefs.simulation import kitchen as k
-from kitchen_prefs.simulation.kitchen import Kitchen
+from kitchen_prefs.simulation.kitchen import (
+    DOOR,
+    FIRST_DISH,
+    FIRST_PLACEMENT,
+    RACK_INSTANCE,
+    SINK,
+    Kitchen,
+)
 from kitchen_prefs.simulation.sessions import expert_trajectory, make_session
 from kitchen_prefs.splits import SPLITS
 
@@ -33,17 +39,17 @@ def static_session(split, sunk):
         session
         for session in (make_session(split, index) for index in range(SPLITS[split].sessions))
         if session.dishes.present == len(session.dishes.category)
-        and (k.SINK in expert_trajectory(session).decisions) == sunk
+        and (SINK in expert_trajectory(session).decisions) == sunk
     )
 
 
 SESSION = static_session("seen", sunk=False)
 FIRST, SECOND = SESSION.preference.racks
 EXPERT = expert_trajectory(SESSION).decisions
-CLOSES = EXPERT.index(k.RACK_INSTANCE[FIRST], 2)
+CLOSES = EXPERT.index(RACK_INSTANCE[FIRST], 2)
 # The expert opens the door, fills one rack, fills the other, closes the door.
 FILL_FIRST, FILL_SECOND = EXPERT[1 : CLOSES + 1], EXPERT[CLOSES + 1 : -1]
-TOGGLE_FIRST = k.RACK_INSTANCE[FIRST]
+TOGGLE_FIRST = RACK_INSTANCE[FIRST]
 
 
 def play(decisions, session=SESSION):
@@ -76,12 +82,12 @@ def free_place(decisions, dish, rack):
     for decision in decisions:
         assert kitchen.decide(decision) == ""
     free = kitchen.free(rack, int(SESSION.dishes.category[dish]))
-    return k.FIRST_PLACEMENT[rack] + int(free[0])
+    return FIRST_PLACEMENT[rack] + int(free[0])
 
 
 def without_dish(decisions, dish):
     """The decisions without the pick of a dish and the place that follows it."""
-    pick = decisions.index(k.FIRST_DISH + dish)
+    pick = decisions.index(FIRST_DISH + dish)
     return decisions[:pick] + decisions[pick + 2 :]
 
 
@@ -92,7 +98,7 @@ def test_the_experts_own_decisions_are_perfect():
 
 
 def test_a_swapped_rack_order_keeps_packing_and_lowers_order():
-    episode = play((k.DOOR, *FILL_SECOND, *FILL_FIRST, k.DOOR))
+    episode = play((DOOR, *FILL_SECOND, *FILL_FIRST, DOOR))
     # The shorter block is taken out where it stood and put in where it now stands.
     edits = 2 * min(len(FILL_FIRST), len(FILL_SECOND))
     assert packing_efficiency(episode) == temporal_efficiency(episode) == 1
@@ -105,10 +111,10 @@ def test_a_swapped_rack_order_keeps_packing_and_lowers_order():
 
 def test_one_dish_in_the_wrong_rack_lowers_packing():
     dish, n = dishes_for(SECOND)[0], len(dishes_for(SECOND))
-    filled = (k.DOOR, *FILL_FIRST[:-1])
-    wrong = (k.FIRST_DISH + dish, free_place(filled, dish, FIRST))
+    filled = (DOOR, *FILL_FIRST[:-1])
+    wrong = (FIRST_DISH + dish, free_place(filled, dish, FIRST))
     rest = without_dish(FILL_SECOND, dish)
-    episode = play((*filled, *wrong, TOGGLE_FIRST, *rest, k.DOOR))
+    episode = play((*filled, *wrong, TOGGLE_FIRST, *rest, DOOR))
     assert packing_efficiency(episode) == pytest.approx((1 + (n - 1) / n) / 2)
     assert failure_modes(episode)["wrong rack"] == episode.wrong_rack == 1
     assert episode.finished
@@ -116,13 +122,13 @@ def test_one_dish_in_the_wrong_rack_lowers_packing():
 
 
 def test_all_dishes_in_wrong_racks_pack_nothing():
-    decisions = (k.DOOR,)
+    decisions = (DOOR,)
     for rack, other in zip(RACKS, reversed(RACKS), strict=True):
-        decisions += (k.RACK_INSTANCE[rack],)
+        decisions += (RACK_INSTANCE[rack],)
         for dish in dishes_for(other):
-            decisions += (k.FIRST_DISH + dish, free_place(decisions, dish, rack))
-        decisions += (k.RACK_INSTANCE[rack],)
-    episode = play((*decisions, k.DOOR))
+            decisions += (FIRST_DISH + dish, free_place(decisions, dish, rack))
+        decisions += (RACK_INSTANCE[rack],)
+    episode = play((*decisions, DOOR))
     assert packing_efficiency(episode) == temporal_efficiency(episode) == 0
     assert episode.wrong_rack == len(SESSION.dishes.category)
     assert episode.finished
@@ -131,7 +137,7 @@ def test_all_dishes_in_wrong_racks_pack_nothing():
 
 def test_moving_a_rack_to_and_fro_lowers_temporal_efficiency():
     moves = (TOGGLE_FIRST,) * 10
-    episode = play((k.DOOR, *moves, *EXPERT[1:]))
+    episode = play((DOOR, *moves, *EXPERT[1:]))
     assert packing_efficiency(episode) == 1
     assert temporal_efficiency(episode) == pytest.approx(len(EXPERT) / (len(EXPERT) + 10))
     assert edit_similarity(episode) == pytest.approx(1 - 10 / len(EXPERT))
@@ -139,7 +145,7 @@ def test_moving_a_rack_to_and_fro_lowers_temporal_efficiency():
 
 
 def test_closing_the_door_before_the_counter_is_clear_counts():
-    episode = play((k.DOOR, k.DOOR, *EXPERT))
+    episode = play((DOOR, DOOR, *EXPERT))
     assert failure_modes(episode)["closed early"] == episode.closed_early == 1
     assert packing_efficiency(episode) == 1
     assert edit_similarity(episode) == pytest.approx(1 - 2 / len(EXPERT))
@@ -151,9 +157,9 @@ def test_a_blocked_placement_counts():
     dish, like = next(
         (a, b) for a, b in combinations(dishes_for(FIRST), 2) if category[a] == category[b]
     )
-    opened = (k.DOOR, TOGGLE_FIRST)
+    opened = (DOOR, TOGGLE_FIRST)
     place = free_place(opened, dish, FIRST)
-    episode = play((*opened, k.FIRST_DISH + dish, place, k.FIRST_DISH + like, place, place))
+    episode = play((*opened, FIRST_DISH + dish, place, FIRST_DISH + like, place, place))
     assert episode.refused == (False,) * 5 + (True, True)
     assert failure_modes(episode)["blocked place"] == episode.blocked_places == 2
     assert episode.longest_loop == 2
@@ -163,7 +169,7 @@ def test_a_blocked_placement_counts():
 def test_sinking_without_need_counts_and_lowers_packing():
     dish, n = dishes_for(FIRST)[0], len(dishes_for(FIRST))
     rest = without_dish(EXPERT, dish)
-    episode = play((k.FIRST_DISH + dish, k.SINK, *rest))
+    episode = play((FIRST_DISH + dish, SINK, *rest))
     assert failure_modes(episode)["sunk without need"] == episode.sunk == 1
     assert packing_efficiency(episode) == pytest.approx((1 + (n - 1) / n) / 2)
     assert episode.finished
@@ -172,8 +178,8 @@ def test_sinking_without_need_counts_and_lowers_packing():
 def test_leaving_on_the_counter_what_the_expert_sinks_is_no_success():
     session = static_session("unseen_counts", sunk=True)
     decisions = expert_trajectory(session).decisions
-    while k.SINK in decisions:
-        place = decisions.index(k.SINK)
+    while SINK in decisions:
+        place = decisions.index(SINK)
         decisions = decisions[: place - 1] + decisions[place + 1 :]
     episode = play(decisions, session)
     assert packing_efficiency(episode) == 1

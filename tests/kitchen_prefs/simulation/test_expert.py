@@ -4,9 +4,19 @@ import numpy as np
 import pytest
 
 from kitchen_prefs.preferences import CATEGORIES, RACKS
-from kitchen_prefs.simulation import kitchen as k
 from kitchen_prefs.simulation.expert import roll_out_expert
-from kitchen_prefs.simulation.kitchen import Kitchen, Location
+from kitchen_prefs.simulation.kitchen import (
+    BOTTOM_RACK,
+    DOOR,
+    FIRST_DISH,
+    FIRST_PLACEMENT,
+    IN_RACK,
+    RACK_INSTANCE,
+    SINK,
+    TOP_RACK,
+    Kitchen,
+    Location,
+)
 from kitchen_prefs.simulation.sessions import expert_trajectory, make_session
 
 
@@ -27,27 +37,27 @@ def feasible_decision(kitchen, session, generator):
         if (preferred_rack(session, dish) != kitchen.out) == wrong
     ]
     if not dishes or generator.random() < 0.1:
-        return k.RACK_INSTANCE[kitchen.out]
-    return k.FIRST_DISH + int(generator.choice(dishes))
+        return RACK_INSTANCE[kitchen.out]
+    return FIRST_DISH + int(generator.choice(dishes))
 
 
 def random_without_a_rack(kitchen, generator):
     """Mostly open the door and a rack; now and then close the door or pick what must be sunk."""
     if generator.random() < 0.1:
-        return int(generator.choice([k.DOOR, *(k.FIRST_DISH + kitchen.counter)]))
+        return int(generator.choice([DOOR, *(FIRST_DISH + kitchen.counter)]))
     if not kitchen.door_open:
-        return k.DOOR
-    return int(generator.choice([k.BOTTOM_RACK, k.TOP_RACK]))
+        return DOOR
+    return int(generator.choice([BOTTOM_RACK, TOP_RACK]))
 
 
 def random_place(kitchen, generator):
     """A free placement, or now and then the sink."""
     if kitchen.out is None or generator.random() < 0.1:
-        return k.SINK
+        return SINK
     free = kitchen.free(kitchen.out, int(kitchen.dishes.category[kitchen.held]))
     if len(free) == 0:
-        return k.SINK
-    return k.FIRST_PLACEMENT[kitchen.out] + int(generator.choice(free))
+        return SINK
+    return FIRST_PLACEMENT[kitchen.out] + int(generator.choice(free))
 
 
 @pytest.mark.parametrize("split", ["seen", "unseen_both", "many_preferences"])
@@ -63,7 +73,7 @@ def test_it_finishes_from_any_reachable_state(split, count):
                 break
             assert kitchen.decide(feasible_decision(kitchen, session, generator)) == ""
         for rack in RACKS:
-            racked = np.flatnonzero(kitchen.location == k.IN_RACK[rack])
+            racked = np.flatnonzero(kitchen.location == IN_RACK[rack])
             in_wrong_rack += [preferred_rack(session, dish) != rack for dish in racked]
         run = roll_out_expert(kitchen, session.preference)
         assert run.kitchen.finished
@@ -97,7 +107,7 @@ def test_it_puts_nothing_into_a_wrong_rack():
             session.dishes.category, expert_trajectory(session).kitchen.location, strict=True
         ):
             rack = session.preference.rack_of[CATEGORIES[category]]
-            assert place in (k.IN_RACK[rack], Location.SINK)
+            assert place in (IN_RACK[rack], Location.SINK)
 
 
 def test_it_uses_the_sink_only_when_nothing_fits():

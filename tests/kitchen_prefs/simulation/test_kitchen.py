@@ -9,22 +9,34 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from kitchen_prefs.preferences import CATEGORIES
-from kitchen_prefs.simulation import kitchen as k
-from kitchen_prefs.simulation.kitchen import Kitchen, Location, placement_table
+from kitchen_prefs.simulation.kitchen import (
+    ARRIVALS_AT_LATEST,
+    BOTTOM_RACK,
+    DOOR,
+    FIRST_DISH,
+    FIRST_PLACEMENT,
+    IN_RACK,
+    RACK_INSTANCE,
+    SINK,
+    TOP_RACK,
+    Kitchen,
+    Location,
+    placement_table,
+)
 from kitchen_prefs.simulation.sessions import make_session
 
-JOINTS = (k.DOOR, k.BOTTOM_RACK, k.TOP_RACK)
+JOINTS = (DOOR, BOTTOM_RACK, TOP_RACK)
 # Now and then something that is seldom to be had: no dish, one that is put away or still to come, a
 # placement of another rack or category, the sink with nothing in hand.
-ANYTHING = (*range(-1, 24), k.SINK, *range(1000, 1400, 29), *range(2000, 2400, 29))
+ANYTHING = (*range(-1, 24), SINK, *range(1000, 1400, 29), *range(2000, 2400, 29))
 
 # A draw chooses among what may be chosen when its turn comes. Most sequences begin with a rack that
 # is pulled out, and with none out dishes are seldom picked, lest everything goes to the sink.
 KINDS = ("joint", "dish", "dish", "dish", "anything")
 OPENINGS = (
     [],
-    [("joint", k.DOOR), ("joint", k.BOTTOM_RACK)],
-    [("joint", k.DOOR), ("joint", k.TOP_RACK)],
+    [("joint", DOOR), ("joint", BOTTOM_RACK)],
+    [("joint", DOOR), ("joint", TOP_RACK)],
 )
 DRAWS = st.builds(
     lambda opening, rest: opening + rest,
@@ -43,10 +55,10 @@ def drawn_instance(kitchen, kind, number):
     if kind == "anything":
         options = ANYTHING
     elif kitchen.held is not None:
-        first = k.FIRST_PLACEMENT.get(kitchen.out, 0)
-        options = [*(first + kitchen.placements()).tolist(), k.SINK]
+        first = FIRST_PLACEMENT.get(kitchen.out, 0)
+        options = [*(first + kitchen.placements()).tolist(), SINK]
     elif kind == "dish" and kitchen.out is not None and len(kitchen.counter) > 0:
-        options = (k.FIRST_DISH + kitchen.counter).tolist()
+        options = (FIRST_DISH + kitchen.counter).tolist()
     else:
         options = JOINTS
     return options[number % len(options)]
@@ -73,16 +85,16 @@ class Witness:
 
     def see(self, held, instance):
         if held is not None:
-            racks = {first // 1000: rack for rack, first in k.FIRST_PLACEMENT.items()}
+            racks = {first // 1000: rack for rack, first in FIRST_PLACEMENT.items()}
             self.put[held] = racks.get(instance // 1000, "sink")
-        for rack, joint in k.RACK_INSTANCE.items():
+        for rack, joint in RACK_INSTANCE.items():
             if held is None and instance == joint:
                 self.out = rack if self.out is None else None
 
 
 def assert_no_two_dishes_block_each_other(kitchen):
     blocks = placement_table().blocks
-    for rack, where in k.IN_RACK.items():
+    for rack, where in IN_RACK.items():
         standing = kitchen.placement[kitchen.location == where]
         between = blocks[np.ix_(standing, standing)]  # each placement blocks itself
         assert between.sum() == len(standing), f"dishes in the {rack} rack block each other"
@@ -158,20 +170,20 @@ def test_a_newly_opened_kitchen():
 
 def test_the_door_moves_only_with_both_racks_in():
     kitchen = new_kitchen()
-    assert kitchen.decide(k.DOOR) == ""
-    assert kitchen.decide(k.TOP_RACK) == ""
-    assert "both racks in" in kitchen.decide(k.DOOR)
-    assert kitchen.decide(k.TOP_RACK) == ""
-    assert kitchen.decide(k.DOOR) == ""
+    assert kitchen.decide(DOOR) == ""
+    assert kitchen.decide(TOP_RACK) == ""
+    assert "both racks in" in kitchen.decide(DOOR)
+    assert kitchen.decide(TOP_RACK) == ""
+    assert kitchen.decide(DOOR) == ""
     assert kitchen.closed
 
 
 def test_a_rack_moves_only_with_the_door_open_and_the_other_in():
     kitchen = new_kitchen()
-    assert "door open" in kitchen.decide(k.BOTTOM_RACK)
-    kitchen.decide(k.DOOR)
-    kitchen.decide(k.TOP_RACK)
-    assert "other rack in" in kitchen.decide(k.BOTTOM_RACK)
+    assert "door open" in kitchen.decide(BOTTOM_RACK)
+    kitchen.decide(DOOR)
+    kitchen.decide(TOP_RACK)
+    assert "other rack in" in kitchen.decide(BOTTOM_RACK)
 
 
 def two_alike(kitchen):
@@ -183,23 +195,23 @@ def two_alike(kitchen):
 
 def test_a_dish_goes_only_into_a_free_placement_of_the_open_rack():
     kitchen = new_kitchen()
-    kitchen.decide(k.DOOR)
-    kitchen.decide(k.TOP_RACK)
+    kitchen.decide(DOOR)
+    kitchen.decide(TOP_RACK)
     dish, like = two_alike(kitchen)
-    kitchen.decide(k.FIRST_DISH + dish)
+    kitchen.decide(FIRST_DISH + dish)
     placement = int(kitchen.free("top", int(kitchen.dishes.category[dish]))[0])
-    assert "rack that is out" in kitchen.decide(k.FIRST_PLACEMENT["bottom"] + placement)
-    assert kitchen.decide(k.FIRST_PLACEMENT["top"] + placement) == ""
-    assert "Only a dish on the counter" in kitchen.decide(k.FIRST_DISH + dish)
-    kitchen.decide(k.FIRST_DISH + like)
-    assert "blocked" in kitchen.decide(k.FIRST_PLACEMENT["top"] + placement)
+    assert "rack that is out" in kitchen.decide(FIRST_PLACEMENT["bottom"] + placement)
+    assert kitchen.decide(FIRST_PLACEMENT["top"] + placement) == ""
+    assert "Only a dish on the counter" in kitchen.decide(FIRST_DISH + dish)
+    kitchen.decide(FIRST_DISH + like)
+    assert "blocked" in kitchen.decide(FIRST_PLACEMENT["top"] + placement)
 
 
 def test_a_sunk_dish_leaves_the_set():
     kitchen = new_kitchen()
     dish = int(kitchen.counter[0])
-    kitchen.decide(k.FIRST_DISH + dish)
-    assert kitchen.decide(k.SINK) == ""
+    kitchen.decide(FIRST_DISH + dish)
+    assert kitchen.decide(SINK) == ""
     assert dish not in kitchen.visible_dishes()
 
 
@@ -209,8 +221,8 @@ def test_dishes_to_come_arrive_once_the_counter_is_cleared():
     )
     for dish in kitchen.counter:
         assert not kitchen.finished
-        kitchen.decide(k.FIRST_DISH + int(dish))
-        kitchen.decide(k.SINK)
+        kitchen.decide(FIRST_DISH + int(dish))
+        kitchen.decide(SINK)
     assert len(kitchen.counter) == 1
 
 
@@ -218,6 +230,6 @@ def test_dishes_arrive_in_the_end_even_if_the_counter_is_never_cleared():
     kitchen = next(
         kitchen for kitchen in (new_kitchen(index=i) for i in range(70)) if not kitchen.all_arrived
     )
-    for _ in range(k.ARRIVALS_AT_LATEST + len(kitchen.location)):
-        kitchen.decide(k.DOOR)
+    for _ in range(ARRIVALS_AT_LATEST + len(kitchen.location)):
+        kitchen.decide(DOOR)
     assert kitchen.all_arrived
