@@ -1,14 +1,12 @@
+"""Dishes dropped into a rack."""
+
 import numpy as np
 import pytest
 
-from kitchen_prefs.physics.blocking import blocking_table
-from kitchen_prefs.physics.carrying import carry
 from kitchen_prefs.physics.settling import Settler, displacement
-from kitchen_prefs.simulation.placements import load_placements
 
 UPRIGHT = (1.0, 0.0, 0.0, 0.0)
 INVERTED = (0.0, 1.0, 0.0, 0.0)
-GLASS, SMALL_BOWL, BIG_BOWL = 1, 3, 4
 FREE_SPOT = (0.0875, 0.0)  # between the two rows of short tines
 
 
@@ -40,25 +38,3 @@ def test_displacement_measures_shift_and_turn():
     shift, turn = displacement(np.array([0.0, 0, 0, *UPRIGHT]), np.array([0.0, 3, 4, *quarter]))
     assert shift == pytest.approx(5.0)
     assert turn == pytest.approx(np.pi / 2)
-
-
-def test_neighbours_block_and_distant_dishes_do_not():
-    def glass(x: float) -> list[float]:
-        return [x, 0.0, 0.069, *INVERTED]
-
-    blocks = blocking_table(np.full(3, GLASS), np.array([glass(0.0), glass(0.101), glass(0.105)]))
-    assert blocks.tolist() == [[True, True, False], [True, True, True], [False, True, True]]
-
-
-def test_a_bowl_may_not_nest_in_another():
-    nested = np.array([[0.0, 0.0, 0.05, *UPRIGHT], [0.0, 0.0, 0.10, *UPRIGHT]])
-    assert blocking_table(np.array([BIG_BOWL, SMALL_BOWL]), nested).all()
-
-
-def test_a_carried_dish_stays_and_a_badly_stood_one_does_not():
-    placements = load_placements()
-    index = int(np.argmax(placements.category == GLASS))
-    good = np.concatenate([placements.position[index], placements.quaternion[index]])
-    on_a_tine = np.array([0.145, 0.0, 0.15, *INVERTED])
-    assert carry(["glass"], good[None].astype(float)).tolist() == [True]
-    assert carry(["glass"], on_a_tine[None]).tolist() == [False]

@@ -1,0 +1,66 @@
+"""The files are those that LeRobot's own writer would write."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from kitchen_prefs.datasets import make_dataset
+from kitchen_prefs.datasets.columns import FEATURES, FPS, ROBOT_TYPE, columns_of, read_columns
+from kitchen_prefs.datasets.names import content_of
+from kitchen_prefs.envs.demonstrations import demonstrate
+from kitchen_prefs.simulation.sessions import make_session
+
+pytestmark = pytest.mark.xdist_group("writing")  # one fixture of the module serves all
+
+SMALL = "dishwasher-train-p2-d2-v1"
+
+
+def test_the_files_do_not_depend_on_the_number_of_workers(small, home):
+    alone = make_dataset(SMALL, workers=1)
+    assert alone != small
+    assert _contents(alone) == _contents(small)
+
+
+def test_lerobots_own_writer_would_write_the_same(small, home):
+    from lerobot.datasets import LeRobotDataset
+
+    written = LeRobotDataset.create(
+        "kitchen_prefs/by_lerobot", FPS, FEATURES, home / "by_lerobot", ROBOT_TYPE, use_videos=False
+    )
+    for session in content_of(SMALL).sessions:
+        demonstration = demonstrate(make_session(*session))
+        columns = columns_of(demonstration)
+        for frame in range(len(columns["action"])):
+            values = {name: np.atleast_1d(column[frame]) for name, column in columns.items()}
+            written.add_frame(values | {"task": demonstration.task})
+        written.save_episode()
+    written.finalize()
+
+    for file in ("meta/info.json", "meta/stats.json"):
+        ours, lerobots = (json.loads((root / file).read_text()) for root in (small, written.root))
+        assert _approximately(ours) == lerobots
+    for file in ("meta/tasks.parquet", "meta/episodes/chunk-000/file-000.parquet"):
+        ours, lerobots = (pd.read_parquet(root / file) for root in (small, written.root))
+        pd.testing.assert_frame_equal(ours[sorted(ours)], lerobots[sorted(lerobots)])
+    dataset = LeRobotDataset("kitchen_prefs/by_lerobot", root=written.root)
+    ours = read_columns(small)
+    for frame in (0, len(dataset) // 2, len(dataset) - 1):
+        for name, column in ours.items():
+            np.testing.assert_array_equal(dataset[frame][name].numpy(), column[frame])
+
+
+def _approximately(tree):
+    """Numbers within rounding, as pooling all episodes at once rounds otherwise than one by one."""
+    if isinstance(tree, dict):
+        return {key: _approximately(value) for key, value in tree.items()}
+    if isinstance(tree, list) and tree and isinstance(tree[0], float):
+        return pytest.approx(tree)
+    return tree
+
+
+def _contents(root: Path) -> dict[str, bytes]:
+    files = (path for path in root.rglob("*") if path.is_file())
+    return {str(path.relative_to(root)): path.read_bytes() for path in files}
