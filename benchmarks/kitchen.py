@@ -22,17 +22,17 @@ def kitchen_decisions() -> Iterator[Result]:
     total = sum(map(len, decisions))
     environment = DishwasherLoading("seen")
     actions = {i: list(_actions(environment, i)) for i in SESSIONS}
-    lines = [write_line(_played(environment, i, actions[i])) for i in SESSIONS]
+    lines = [write_line(_rolled_out(environment, i, actions[i])) for i in SESSIONS]
     cartpole = gymnasium.make("CartPole-v1").unwrapped
 
-    def rules() -> int:
+    def kitchen_alone() -> int:
         for session, of_session in zip(sessions, decisions, strict=True):
             kitchen = Kitchen(session.dishes)
             for instance in of_session:
                 kitchen.decide(instance)
         return total
 
-    def rules_and_sets() -> int:
+    def kitchen_and_sets() -> int:
         for session, of_session in zip(sessions, decisions, strict=True):
             kitchen = Kitchen(session.dishes)
             observer = Observer(kitchen, np.random.default_rng(0), None)
@@ -66,7 +66,7 @@ def kitchen_decisions() -> Iterator[Result]:
         "environment: step, reset included",
         "leaderboard: replay",
     )
-    *found, yardstick = rates(rules, rules_and_sets, steps, replays, cartpole_steps)
+    *found, yardstick = rates(kitchen_alone, kitchen_and_sets, steps, replays, cartpole_steps)
     for name, rate in zip(names, found, strict=True):
         yield Result(name, rate, "decisions/s", "CartPole-v1 steps", yardstick)
 
@@ -80,7 +80,7 @@ def _actions(environment: DishwasherLoading, session: int) -> Iterator[np.ndarra
         terminated = environment.step(action)[2]
 
 
-def _played(environment: DishwasherLoading, session: int, actions: list[np.ndarray]) -> Episode:
+def _rolled_out(environment: DishwasherLoading, session: int, actions: list[np.ndarray]) -> Episode:
     environment.reset(options={"session": session})
     for action in actions:
         environment.step(action)

@@ -1,4 +1,4 @@
-"""What a benchmark reports, and how often it repeats."""
+"""Rates of work, measured in turn, and how they are reported."""
 
 import statistics
 import time
@@ -35,7 +35,7 @@ def rates(*works: Callable[[], int]) -> list[float]:
     """Units of work a second, of several works in turn, so that drift hits all of them alike.
 
     Args:
-        *works: Each does some units of work and says how many.
+        *works: Each does some units of work and returns how many.
 
     Returns:
         The median rate of each work.

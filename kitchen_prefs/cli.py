@@ -37,7 +37,7 @@ def _printable(text: str) -> str:
 def command_line() -> typer.Typer:
     """The command with the subcommands of all installed packages."""
     app = typer.Typer(
-        help="Can a policy learn how THIS person loads a dishwasher, from one demonstration?",
+        help="Can a policy learn how THIS user loads a dishwasher, from one demonstration?",
         epilog="With KITCHEN_PREFS_DEBUG=1 in the environment, errors come with their traceback.",
         no_args_is_help=True,
         add_completion=False,

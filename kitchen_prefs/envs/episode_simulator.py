@@ -175,7 +175,7 @@ def _standing(kitchen: Kitchen, session: Session) -> tuple[tuple[int, int], int]
 
 
 def _longest_loop(decisions: list[int], refused: list[bool]) -> int:
-    """The longest run of one forbidden choice that is repeated."""
+    """The most times in a row that one refused decision was repeated."""
     longest = run = 0
     previous = None
     for instance, was_refused in zip(decisions, refused, strict=True):

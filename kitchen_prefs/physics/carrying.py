@@ -42,9 +42,9 @@ def carry(categories: Sequence[str], poses: np.ndarray) -> np.ndarray:
 
 
 def _slide(time: float) -> tuple[float, float]:
-    """The rack's way in m and its speed in m/s: a smooth start and a smooth stop."""
+    """The rack's displacement in m and its speed in m/s, at a time in s: of least jerk."""
     s = float(np.clip(time / SLIDING_TIME, 0.0, 1.0))
-    way = s**3 * (10 - 15 * s + 6 * s**2)  # of least jerk
+    way = s**3 * (10 - 15 * s + 6 * s**2)
     speed = 30 * s**2 * (1 - s) ** 2 / SLIDING_TIME
     return RACK_TRAVEL * way, RACK_TRAVEL * speed
 

@@ -47,7 +47,7 @@ class Settler:
         self.data = mujoco.MjData(self.model)
 
     def settled(self, rng: np.random.Generator) -> Iterator[np.ndarray]:
-        """Drop for ever and yield the poses, (7,) in the rack's frame, that stand well."""
+        """Drop without end; yield the poses of rest, (7,) in the rack's frame, that stand well."""
         while True:
             pose = self.settle(self._random_pose(rng))
             if pose is not None:

@@ -26,8 +26,8 @@ FIRST_PLACEMENT = {"bottom": 1000, "top": 2000}
 RACK_INSTANCE = {"bottom": BOTTOM_RACK, "top": TOP_RACK}
 RACK_OF_INSTANCE = {instance: rack for rack, instance in RACK_INSTANCE.items()}
 
-# Dishes still to come start to arrive at the latest after this many completed actions, so that a
-# policy which never clears the counter meets them too. The expert clears twenty dishes in 25
+# Dishes that have not arrived start to arrive at the latest after this many completed actions, so
+# that a policy which never clears the counter meets them too. The expert clears twenty dishes in 25
 # actions.
 ARRIVALS_AT_LATEST = 30
 
@@ -153,7 +153,7 @@ class Kitchen:
 
     @property
     def all_arrived(self) -> bool:
-        """Whether no dish is still to come."""
+        """Whether all dishes of the session have arrived."""
         return self._arrived == len(self.location)
 
     @property
@@ -249,10 +249,10 @@ class Kitchen:
             self.location[self._arrived] = Location.COUNTER
             self._arrived += 1
 
-    # What a score and a picture need ---------------------------------------------------------
+    # What scores and pictures need -----------------------------------------------------------
 
     def pose_in_world(self) -> np.ndarray:
-        """Where each dish really is, (n, 7) float32: a rack that is in stands further back."""
+        """The pose of each dish in the world, (n, 7) float32; closed racks are further back (m)."""
         pose = self.pose.copy()
         for rack in RACKS:
             if rack != self.out:
