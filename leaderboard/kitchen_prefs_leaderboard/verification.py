@@ -16,7 +16,7 @@ from pydantic import Field, ValidationError
 from kitchen_prefs.envs.environment import FRESH_SALTS
 from kitchen_prefs.metrics import Episode, Interval, mean_of_splits, score
 from kitchen_prefs.utils.files import write_json
-from kitchen_prefs_leaderboard.scoring import MEAN, Entry, difference, rounded
+from kitchen_prefs_leaderboard.scoring import MEAN, Entry, difference
 from kitchen_prefs_leaderboard.submission_format import (
     Hash,
     Name,
@@ -183,4 +183,4 @@ def _named(policy: Policy) -> str:
 
 
 def _means(interval: Interval) -> Means:
-    return Means(**rounded(interval))
+    return Means(**interval.rounded())

@@ -11,7 +11,6 @@ from kitchen_prefs.evaluation.checkpoint_selection import select_checkpoint
 from kitchen_prefs_experiments.paper.result_files import make_facts
 from kitchen_prefs_experiments.paper.rows import BASE
 from kitchen_prefs_experiments.paper.runs import Run
-from kitchen_prefs_experiments.paper.table_metrics import rounded
 from kitchen_prefs_experiments.paper.table_types import Curves
 from kitchen_prefs_experiments.paper.training import check_settings, run_training
 from kitchen_prefs_experiments.recipes import recipe_file
@@ -86,7 +85,7 @@ def _curve(recipe: str, earlier: int, metrics: tuple[str, ...]) -> dict:
         {
             "step": int(step),
             "seconds": round(earlier + int(step) * each),
-            "metrics": {metric: rounded(of_step[metric]) for metric in metrics},
+            "metrics": {metric: of_step[metric].rounded() for metric in metrics},
         }
         for step, of_step in selection.metrics.items()
     ]

@@ -1,7 +1,6 @@
 """The metrics of a table's groups, from the lines that evaluations wrote."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict
 from itertools import chain
 from statistics import mean
 
@@ -86,11 +85,5 @@ def _of_rollouts(episodes: Sequence[Episode]) -> Iterator[tuple[str, Interval]]:
 def _group(episodes: Sequence[Episode], metrics: Iterator[tuple[str, Interval]]) -> dict:
     return {
         "episodes": len(episodes),
-        "metrics": {name: rounded(interval) for name, interval in metrics},
+        "metrics": {name: interval.rounded() for name, interval in metrics},
     }
-
-
-def rounded(interval: Interval) -> dict[str, float]:
-    """A mean and its interval, rounded to what can be told."""
-    # The bootstrap tells no more than three digits; a fourth keeps rounding out of them.
-    return {name: round(value, 4) for name, value in asdict(interval).items()}
