@@ -37,7 +37,7 @@ POLICIES = {
     "gnn": "common kitchen_prefs.envs kitchen_prefs.instances kitchen_prefs.preferences",
     "rules": (
         "common kitchen_prefs.envs kitchen_prefs.instances kitchen_prefs.preferences "
-        "kitchen_prefs.simulation kitchen_prefs.utils"
+        "kitchen_prefs.simulation kitchen_prefs.splits kitchen_prefs.utils"
     ),
     "__init__": "gnn rules ttp kitchen_prefs.envs",
 }

@@ -51,6 +51,7 @@ class EpisodeSimulator:
         self.limit = LIMIT_FACTOR * len(expert_trajectory(session).decisions)
         self._actions: list[tuple[float, ...]] = []
         self._closed_early = 0
+        self._right_turns = self._turns = 0
         self._grasp = session.generator("grasp") if noisy else None
         noise = session.generator("noise") if noisy else None
         self.observer = Observer(self.kitchen, session.generator("order"), noise)
@@ -90,11 +91,15 @@ class EpisodeSimulator:
             Why the kitchen did not carry it out, or an empty string.
         """
         early = instance == k.DOOR and self._door_closes_early()
+        turn = self._dishes_in_turn()
         refusal = self._carry_out(instance)
         self.decisions.append(instance)
         self.refused.append(bool(refusal))
         self._actions.append(tuple(float(value) for value in action))
         self._closed_early += early and not refusal
+        if turn is not None and not refusal:
+            self._turns += 1
+            self._right_turns += instance - k.FIRST_DISH in turn
         self.observation = self.observer.observe()
         return refusal
 
@@ -145,6 +150,7 @@ class EpisodeSimulator:
                 for was_refused, instance in zip(self.refused, self.decisions, strict=True)
             ),
             longest_loop=_longest_loop(self.decisions, self.refused),
+            turns=(self._right_turns, self._turns),
             closed_early=self._closed_early,
             closed=kitchen.closed,
             finished=kitchen.finished,
@@ -156,6 +162,24 @@ class EpisodeSimulator:
         if fails and instance >= k.FIRST_DISH and self.kitchen.held is None:
             return "The grasp failed."
         return self.kitchen.decide(instance)
+
+    def _dishes_in_turn(self) -> list[int] | None:
+        """The dishes of the lowest rank that wait for the rack that is out.
+
+        None if a dish is in hand, no rack is out, or the dishes of fewer than two ranks wait.
+        """
+        if self.kitchen.held is not None or self.kitchen.out is None:
+            return None
+        preference, category = self.session.preference, self.session.dishes.category
+        names = {dish: CATEGORIES[category[dish]] for dish in self.kitchen.counter.tolist()}
+        ranks = {
+            dish: preference.rank_of[name]
+            for dish, name in names.items()
+            if preference.rack_of[name] == self.kitchen.out
+        }
+        if len(set(ranks.values())) < 2:
+            return None
+        return [dish for dish, rank in ranks.items() if rank == min(ranks.values())]
 
     def _door_closes_early(self) -> bool:
         waiting = len(self.kitchen.counter) > 0 or not self.kitchen.all_arrived

@@ -4,7 +4,7 @@ LeRobot and torch take many seconds to import, so the commands import what needs
 `--help` stays quick.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -18,7 +18,7 @@ from kitchen_prefs.evaluation.policy_options import (
     PolicyType,
     settings_of,
 )
-from kitchen_prefs.metrics import METRICS, Interval
+from kitchen_prefs.metrics import FURTHER_METRICS, METRICS, Interval, reference_scores
 from kitchen_prefs.splits import get_split
 from kitchen_prefs.utils.files import make_folder
 
@@ -112,7 +112,7 @@ def select(
     selection = select_checkpoint(run, track=track, batch_size=batch_size)
     table = Table("Step", *METRICS, title="val")
     for step, metrics in selection.metrics.items():
-        _add_intervals(table, step, metrics)
+        _add_intervals(table, step, metrics, METRICS)
     console.print(table)
     console.print(f"The best by Score is {selection.best}.")
 
@@ -128,26 +128,33 @@ def _print_summary(summary: "Summary") -> None:
     for name, interval in summary.metrics.items():
         metrics.add_row(name, f"{interval.mean:.3f}", f"{interval.low:.3f} to {interval.high:.3f}")
     console.print(metrics)
-    reasons = Table("Why episodes fell short", "Episodes", "Times")
-    for reason, (episodes, times) in summary.failure_modes.items():
+    if references := reference_scores().get(summary.split):
+        console.print(
+            f"Rescaled is 0 at the Score {references['floor']:.3f} (the rule promptless) and 1 at "
+            f"{references['ceiling']:.3f} (the rule bayes)."
+        )
+    modes = Table("Failure mode", "Episodes", "Times")
+    for mode, (episodes, times) in summary.failure_modes.items():
         if times:
-            reasons.add_row(reason, str(episodes), str(times))
-    if reasons.row_count:
-        console.print(reasons)
+            modes.add_row(mode, str(episodes), str(times))
+    if modes.row_count:
+        console.print(modes)
 
 
 def _print_overview(summaries: Sequence["Summary"], mean: dict[str, Interval]) -> None:
-    table = Table("Split", *METRICS, title="Means")
-    for summary in summaries:
-        _add_intervals(table, summary.split, summary.metrics)
-    _add_intervals(table, "mean of the splits", mean)
-    console.print(table)
+    for names in (METRICS, FURTHER_METRICS):
+        table = Table("Split", *names, title="Means")
+        for summary in summaries:
+            _add_intervals(table, summary.split, summary.metrics, names)
+        _add_intervals(table, "mean of the splits", mean, names)
+        console.print(table)
 
 
-def _add_intervals(table: Table, name: str, metrics: dict[str, Interval]) -> None:
+def _add_intervals(
+    table: Table, name: str, metrics: dict[str, Interval], names: Iterable[str]
+) -> None:
     """Three rows, as all intervals side by side would be wider than a terminal."""
-    intervals = [metrics[metric] for metric in METRICS]
-    table.add_row(name, *(f"{interval.mean:.3f}" for interval in intervals))
-    table.add_row("  95 % from", *(f"{interval.low:.3f}" for interval in intervals))
-    table.add_row("         to", *(f"{interval.high:.3f}" for interval in intervals))
+    intervals = [metrics.get(metric) for metric in names]
+    for head, end in ((name, "mean"), ("  95 % from", "low"), ("         to", "high")):
+        table.add_row(head, *(f"{getattr(i, end):.3f}" if i else "-" for i in intervals))
     table.add_section()

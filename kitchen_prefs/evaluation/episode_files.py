@@ -1,8 +1,8 @@
 """The file of an evaluation: one JSON line an episode, appended as soon as the episode ends.
 
 A file holds episodes of one split under one set of conditions, which stand in a header beside it.
-It outlives a kill: a torn last line is dropped, and the sessions that are there are not played
-again.
+It outlives a kill: a torn last line is dropped, and the sessions that are there are not rolled
+out again.
 """
 
 import json
@@ -10,7 +10,7 @@ from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 from typing import Any
 
-from kitchen_prefs.metrics import METRICS, Episode, category_accuracy, failure_modes
+from kitchen_prefs.metrics import ALL_METRICS, Episode, category_accuracy, failure_modes
 from kitchen_prefs.utils.files import write_json
 
 
@@ -21,11 +21,11 @@ class EvaluationConditions:
     Attributes:
         policy: The policy's type.
         fingerprint: A hash of its weights and of the settings that change what it does.
-        track: What the policy is told: "standard", "privileged" or "language".
+        track: The track: "standard", "privileged" or "language".
         prompt_of: Whose demonstration the prompt is: of the "same" or of an "other" preference.
         prompts: How many demonstrations prompt an episode.
         expert_states: Whether the decisions were taken in the expert's states.
-        salt: Which drawing of the split's sessions; 0 is the published one.
+        salt: The session seed; 0 is the published one.
         data_version: The version of the sessions.
         package_version: The version of this package.
     """
@@ -64,21 +64,21 @@ class EpisodeFile:
         self.episodes = read_episodes(path)
 
     def append(self, episode: Episode) -> None:
-        """Write an episode, with what it says of the policy."""
+        """Write an episode, with its metrics and failure modes."""
         with self.path.open("a") as file:
-            file.write(json.dumps(asdict(episode) | self._judge(episode)) + "\n")
+            file.write(json.dumps(asdict(episode) | self._metrics(episode)) + "\n")
         self.episodes.append(episode)
 
-    def _judge(self, episode: Episode) -> dict[str, dict[str, Any]]:
-        """The metrics, and why the episode fell short.
+    def _metrics(self, episode: Episode) -> dict[str, dict[str, Any]]:
+        """The metrics and failure modes of an episode.
 
-        What is loaded in the expert's states is the expert's merit; the policy's is the accuracy of
-        its choices alone.
+        In the expert's states the expert loads the racks, so only the accuracy of the policy's
+        choices is measured.
         """
         if self.conditions.expert_states:
             return {"metrics": {"Category accuracy": category_accuracy(episode)}}
         return {
-            "metrics": {name: metric(episode) for name, metric in METRICS.items()},
+            "metrics": {name: metric(episode) for name, metric in ALL_METRICS.items()},
             "failure_modes": failure_modes(episode),
         }
 

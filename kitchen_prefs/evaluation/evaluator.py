@@ -1,4 +1,4 @@
-"""What a policy is worth on a split: its episodes on disk, its metrics, and where it fell short."""
+"""Evaluates a policy on a split: its episodes on disk, its metrics and its failure modes."""
 
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
@@ -10,14 +10,14 @@ from kitchen_prefs.evaluation.episode_files import EpisodeFile, EvaluationCondit
 from kitchen_prefs.evaluation.policy_loading import LoadedPolicy
 from kitchen_prefs.evaluation.rollouts import BATCH_SIZE, roll_out
 from kitchen_prefs.metrics import (
-    METRICS,
     Episode,
     Interval,
     category_accuracy,
     failure_modes,
-    mean_of_splits,
+    mean_of_splits_all,
     prompt_use,
     summarise,
+    summarise_all,
 )
 from kitchen_prefs.splits import DATA_VERSION
 from kitchen_prefs.utils.files import write_json
@@ -25,14 +25,13 @@ from kitchen_prefs.utils.files import write_json
 
 @dataclass(frozen=True)
 class Summary:
-    """What the episodes of one split say.
+    """The metrics of a split's episodes.
 
     Attributes:
         split: The split's name.
         episodes: How many episodes there are.
-        metrics: Each metric's mean and interval.
-        shortcomings: For each reason why episodes fell short, in how many it occurred and how often
-            in all.
+        metrics: The mean and interval of each metric that has a value.
+        failure_modes: For each failure mode, in how many episodes it occurred and how often in all.
     """
 
     split: str
@@ -48,11 +47,11 @@ class Evaluator:
     An evaluation that was killed goes on where it stopped when it is asked for again.
 
     Attributes:
-        actor: The policy.
+        loaded_policy: The policy.
         folder: Holds <split>.jsonl, one line an episode, and <split>.json, the summary.
-        salt: Which drawing of the sessions; 0 is the published one.
+        salt: The session seed; 0 is the published one.
         prompts: How many demonstrations prompt an episode.
-        batch_size: How many sessions are played at once.
+        batch_size: How many sessions are rolled out at once.
     """
 
     loaded_policy: LoadedPolicy
@@ -68,7 +67,7 @@ class Evaluator:
 
         Args:
             split: The split's name.
-            with_prompt_use: Play each session with another preference's prompt, too.
+            with_prompt_use: Roll out each session with another preference's prompt, too.
             with_category_accuracy: Ask for the policy's choices in the expert's states, too.
 
         Raises:
@@ -76,7 +75,7 @@ class Evaluator:
                 prompts or version.
         """
         episodes = self.episodes(split)
-        metrics = {name: summarise(episodes, metric) for name, metric in METRICS.items()}
+        metrics = summarise_all(episodes)
         if with_prompt_use:
             metrics["Prompt use"] = prompt_use(episodes, self.episodes(split, prompt_of="other"))
         if with_category_accuracy:
@@ -91,13 +90,12 @@ class Evaluator:
 
     def mean_of_splits(self, splits: Sequence[str]) -> dict[str, Interval]:
         """Each metric's mean over splits, each of which counts the same."""
-        episodes = [self.episodes(split) for split in splits]
-        return {name: mean_of_splits(episodes, metric) for name, metric in METRICS.items()}
+        return mean_of_splits_all([self.episodes(split) for split in splits])
 
     def episodes(
         self, split: str, *, prompt_of: str = "same", expert_states: bool = False
     ) -> list[Episode]:
-        """The policy's episodes on a split; those that are not in the folder are played first."""
+        """The policy's episodes on a split; those not in the folder are rolled out first."""
         name = split + "-other-prompt" * (prompt_of == "other") + "-expert-states" * expert_states
         return roll_out(
             self.loaded_policy,

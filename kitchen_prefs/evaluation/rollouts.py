@@ -1,4 +1,4 @@
-"""A policy on a split: every session once, a batch of environments in lockstep."""
+"""Rolls a policy out on a split: every session once, a batch of environments in lockstep."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
@@ -25,7 +25,7 @@ class Policy(Protocol):
         """Forget everything: a new batch of episodes begins."""
 
     def act(self, observations: Sequence[dict[str, np.ndarray]], tasks: list[str]) -> np.ndarray:
-        """The actions for what B environments show and say, (B, 7)."""
+        """The actions for the observations and tasks of B environments, (B, 7)."""
 
 
 def roll_out(
@@ -41,23 +41,23 @@ def roll_out(
     batch_size: int = BATCH_SIZE,
     file: EpisodeFile | None = None,
 ) -> list[Episode]:
-    """Play sessions of a split with a policy.
+    """Roll a policy out on sessions of a split.
 
     Args:
         decider: The policy.
         split: The split's name.
         sessions: Which sessions, all if not given.
-        salt: Which drawing of the sessions; 0 is the published one.
-        track: What the environment tells the policy.
+        salt: The session seed; 0 is the published one.
+        track: The track of the environment.
         prompt_of: "same", or "other" for a prompt of another preference.
         prompts: How many demonstrations prompt an episode.
         expert_states: Carry out the expert's decisions and note what the policy would have chosen,
             see `metrics.category_accuracy`.
-        batch_size: How many sessions are played at once. What a deterministic policy does in a
+        batch_size: How many sessions are rolled out at once. What a deterministic policy does in a
             session does not depend on it. A policy that samples draws for the whole batch at once:
-            its episodes are the same only when all sessions are played again with the same batch
-            size, and without a kill in between.
-        file: Where each episode is written as it ends; the sessions in it are not played again.
+            its episodes are the same only when all sessions are rolled out again with the same
+            batch size, and without a kill in between.
+        file: Where each episode is written as it ends; the sessions in it are not rolled out again.
 
     Returns:
         The episodes, one a session, in the sessions' order.
@@ -82,7 +82,9 @@ def roll_out(
     ):
         for batch in batched(missing, batch_size):
             torch.manual_seed(batch[0])  # so that a policy that samples can be repeated, see above
-            for episode in _play(decider, environments[: len(batch)], batch, salt, expert_states):
+            for episode in _roll_out_batch(
+                decider, environments[: len(batch)], batch, salt, expert_states
+            ):
                 episodes[episode.session] = episode
                 if file:
                     file.append(episode)
@@ -90,14 +92,14 @@ def roll_out(
     return [episodes[session] for session in wanted]
 
 
-def _play(
+def _roll_out_batch(
     decider: Policy,
     environments: Sequence[DishwasherLoading],
     sessions: Sequence[int],
     salt: int,
     expert_states: bool,
 ) -> Iterator[Episode]:
-    """Play one session in each environment, and give each episode as soon as it ends.
+    """Roll out one session in each environment, and give each episode as soon as it ends.
 
     The batch keeps its size to the end, as policies keep a memory for each of its rows; what they
     decide for an episode that has ended is dropped.
@@ -108,17 +110,17 @@ def _play(
     observations = [environment.reset(options=option)[0] for environment, option in pairs]
     tasks = [environment.task_description for environment in environments]
     chosen: list[list[int]] = [[] for _ in environments]
-    playing = list(range(len(environments)))
-    while playing:
+    running = list(range(len(environments)))
+    while running:
         actions = decider.act(observations, tasks)  # (B, 7)
-        for i in tuple(playing):
+        for i in tuple(running):
             environment, action = environments[i], actions[i]
             if expert_states:
                 chosen[i].append(environment.simulator.choose(action)[0])
                 action = environment.simulator.expert_action()
             observations[i], _, terminated, truncated, _ = environment.step(action)
             if terminated or truncated:
-                playing.remove(i)
+                running.remove(i)
                 yield (
                     _beside_expert(environment, chosen[i])
                     if expert_states

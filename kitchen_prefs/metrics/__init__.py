@@ -6,34 +6,57 @@ intervals  means over episodes with 95 % bootstrap intervals
 """
 
 from kitchen_prefs.metrics.episode import Episode
-from kitchen_prefs.metrics.intervals import Interval, mean_of_splits, prompt_use, summarise
+from kitchen_prefs.metrics.intervals import (
+    Interval,
+    mean_of_splits,
+    mean_of_splits_all,
+    prompt_use,
+    summarise,
+    summarise_all,
+)
 from kitchen_prefs.metrics.scores import (
+    ALL_METRICS,
+    FURTHER_METRICS,
     METRICS,
     Metric,
     category_accuracy,
     category_edit_similarity,
+    category_edit_similarity_without_refused,
     edit_similarity,
     failure_modes,
     packing_efficiency,
+    reference_scores,
+    refused_decisions,
+    rescaled_score,
     score,
     success,
     temporal_efficiency,
+    turn_accuracy,
 )
 
 __all__ = [
+    "ALL_METRICS",
+    "FURTHER_METRICS",
     "METRICS",
     "Episode",
     "Interval",
     "Metric",
     "category_accuracy",
     "category_edit_similarity",
+    "category_edit_similarity_without_refused",
     "edit_similarity",
     "failure_modes",
     "mean_of_splits",
+    "mean_of_splits_all",
     "packing_efficiency",
     "prompt_use",
+    "reference_scores",
+    "refused_decisions",
+    "rescaled_score",
     "score",
     "success",
     "summarise",
+    "summarise_all",
     "temporal_efficiency",
+    "turn_accuracy",
 ]

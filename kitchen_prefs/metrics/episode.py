@@ -10,7 +10,7 @@ class Episode:
     Attributes:
         split: The split's name.
         session: The session's index within the split.
-        salt: Which drawing of the split's sessions; 0 is the published one.
+        salt: The session seed; 0 is the published one.
         preference: The label of the session's preference, which the expert follows.
         count: The dishes wanted per rack.
         decisions: The instances that the policy chose: 0 the door, 1 the bottom rack, 2 the top
@@ -25,9 +25,11 @@ class Episode:
         wrong_rack: The dishes that stand in the other rack.
         sunk: The dishes dropped in the sink.
         expert_sunk: The dishes that the expert dropped in the sink.
-        forbidden: For each of `decisions`, whether the kitchen could not carry it out.
+        refused: For each of `decisions`, whether the kitchen could not carry it out.
         blocked_places: How often a dish was to go where another one stands in its way.
-        longest_loop: The length of the longest run of one and the same forbidden choice.
+        longest_loop: The length of the longest run of one and the same refused choice.
+        turns: How often a dish of the lowest rank was picked, and at how many decisions dishes of
+            several ranks waited; see `scores.turn_accuracy`.
         closed_early: How often the door was closed with dishes on the counter or still to come.
         closed: Whether both racks were in and the door closed at the end.
         finished: Whether the episode ended by itself, not at the limit of decisions.
@@ -54,6 +56,7 @@ class Episode:
     refused: tuple[bool, ...]
     blocked_places: int
     longest_loop: int
+    turns: tuple[int, int]
     closed_early: int
     closed: bool
     finished: bool

@@ -1,12 +1,15 @@
 """Means over episodes with 95 % bootstrap intervals."""
 
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Self
 
 import numpy as np
 
 from kitchen_prefs.metrics.episode import Episode
-from kitchen_prefs.metrics.scores import Metric, packing_efficiency
+from kitchen_prefs.metrics.scores import ALL_METRICS, Metric, packing_efficiency
+
+DIGITS = 4  # the bootstrap tells no more than three; a fourth keeps rounding out of them
 
 
 @dataclass(frozen=True)
@@ -20,14 +23,32 @@ class Interval:
     def __str__(self) -> str:
         return f"{self.mean:.3f} [{self.low:.3f}, {self.high:.3f}]"
 
+    def rounded(self) -> Self:
+        """The interval as files hold it."""
+        return replace(
+            self,
+            mean=round(self.mean, DIGITS),
+            low=round(self.low, DIGITS),
+            high=round(self.high, DIGITS),
+        )
+
 
 def summarise(episodes: Sequence[Episode], metric: Metric) -> Interval:
-    """The mean of a metric over the episodes of one split.
+    """The mean of a metric over those episodes of one split that have a value of it.
 
     Raises:
-        ValueError: If there are no episodes.
+        ValueError: If no episode has one.
     """
-    return _bootstrap(episodes, [metric(episode) for episode in episodes])
+    return _bootstrap(*_with_values(episodes, metric))
+
+
+def summarise_all(episodes: Sequence[Episode]) -> dict[str, Interval]:
+    """The mean of every metric of which at least one episode has a value."""
+    return {
+        name: summarise(episodes, metric)
+        for name, metric in ALL_METRICS.items()
+        if _has_values(episodes, metric)
+    }
 
 
 def prompt_use(episodes: Sequence[Episode], swapped: Sequence[Episode]) -> Interval:
@@ -57,25 +78,42 @@ def mean_of_splits(splits: Sequence[Sequence[Episode]], metric: Metric) -> Inter
         metric: What is averaged, first over the episodes of a split, then over the splits.
 
     Raises:
-        ValueError: If there are no splits, or if one has no episodes.
+        ValueError: If there are no splits, or if no episode of one has a value.
     """
     if not splits:
         raise ValueError("There are no splits to average over.")
     generator = np.random.default_rng(0)  # one for all: splits are resampled independently
-    values = [[metric(episode) for episode in episodes] for episodes in splits]
-    means = [
-        _resample(episodes, of_split, generator)
-        for episodes, of_split in zip(splits, values, strict=True)
-    ]
-    return _interval(float(np.mean([np.mean(of_split) for of_split in values])), np.mean(means, 0))
+    of_splits = [_with_values(episodes, metric) for episodes in splits]
+    means = [_resample(episodes, values, generator) for episodes, values in of_splits]
+    mean = float(np.mean([np.mean(values) for _, values in of_splits]))
+    return _interval(mean, np.mean(means, axis=0))
+
+
+def mean_of_splits_all(splits: Sequence[Sequence[Episode]]) -> dict[str, Interval]:
+    """The mean over splits of every metric of which each split has a value."""
+    return {
+        name: mean_of_splits(splits, metric)
+        for name, metric in ALL_METRICS.items()
+        if all(_has_values(episodes, metric) for episodes in splits)
+    }
+
+
+def _has_values(episodes: Sequence[Episode], metric: Metric) -> bool:
+    return any(metric(episode) is not None for episode in episodes)
+
+
+def _with_values(episodes: Sequence[Episode], metric: Metric) -> tuple[list[Episode], list[float]]:
+    """The episodes that have a value of a metric, and the values."""
+    pairs = [(episode, metric(episode)) for episode in episodes]
+    known = [(episode, float(value)) for episode, value in pairs if value is not None]
+    return [episode for episode, _ in known], [value for _, value in known]
 
 
 RESAMPLES = 10_000  # the interval's ends then move by less than .002 from seed to seed
 
 
-def _bootstrap(episodes: Sequence[Episode], values: Iterable[float]) -> Interval:
+def _bootstrap(episodes: Sequence[Episode], values: Sequence[float]) -> Interval:
     """The mean of the episodes' values and its interval."""
-    values = list(values)
     means = _resample(episodes, values, np.random.default_rng(0))
     return _interval(float(np.mean(values)), means)
 
@@ -86,7 +124,7 @@ def _interval(mean: float, resampled: np.ndarray) -> Interval:
 
 
 def _resample(
-    episodes: Sequence[Episode], values: Iterable[float], generator: np.random.Generator
+    episodes: Sequence[Episode], values: Sequence[float], generator: np.random.Generator
 ) -> np.ndarray:
     """Resample sessions within preferences; where preferences are a sample, resample those.
 

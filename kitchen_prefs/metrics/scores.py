@@ -1,11 +1,15 @@
-"""How well an episode went: the paper's metrics and this benchmark's score.
+"""The paper's metrics, this benchmark's Score, and the metrics that say what the Score leaves open.
 
-Every metric is a function of one `Episode` and needs nothing else. In the formulas, a dishes stand
-in the top rack at the end of the expert's episode and b in the bottom, â and b̂ at the end of the
-policy's; l and p are the expert's and the policy's numbers of decisions.
+Every metric is a function of one `Episode`; the rescaled Score also reads the committed Scores of
+floor and ceiling (reference_scores.json). In the formulas, a dishes stand in the top rack at the
+end of the expert's episode and b in the bottom, â and b̂ at the end of the policy's; l and p are the
+expert's and the policy's numbers of decisions.
 """
 
+import json
 from collections.abc import Callable
+from functools import cache
+from importlib.resources import files
 
 import numpy as np
 import textdistance
@@ -76,8 +80,59 @@ def category_accuracy(episode: Episode) -> float:
     return float(np.mean([kind == expert for kind, expert in pairs]))
 
 
-Metric = Callable[[Episode], float]
+def turn_accuracy(episode: Episode) -> float | None:
+    """How often the dish whose turn it is was picked, where dishes of several ranks waited.
 
+    A decision counts if nothing is in hand, a rack is out, dishes of at least two categories that
+    the preference gives to this rack wait on the counter, and the kitchen carries the decision out.
+    It is right if it picks a dish of the category of the lowest rank among them; another dish, or
+    closing the rack, is wrong. Refused decisions and failed grasps change nothing and do not count.
+
+    Returns:
+        A share, or None if no decision of the episode counts.
+    """
+    right, turns = episode.turns
+    return right / turns if turns else None
+
+
+def refused_decisions(episode: Episode) -> int:
+    """How many decisions the kitchen could not carry out."""
+    return sum(episode.refused)
+
+
+def category_edit_similarity_without_refused(episode: Episode) -> float:
+    """ED_c of the decisions that the kitchen carried out: the order without geometry's errors."""
+    pairs = zip(episode.kinds, episode.refused, strict=True)
+    carried_out = tuple(kind for kind, was_refused in pairs if not was_refused)
+    return _similarity(carried_out, episode.expert_kinds)
+
+
+@cache
+def reference_scores() -> dict[str, dict[str, float]]:
+    """The Score of the floor and of the ceiling on each test split.
+
+    The floor is the rule `promptless`, which acts by the posterior over all 2 x 7! preferences
+    without a prompt; the ceiling is `bayes`, which has the prompt as well.
+    """
+    return json.loads((files("kitchen_prefs.metrics") / "reference_scores.json").read_text())
+
+
+def rescaled_score(episode: Episode) -> float | None:
+    """(Score - floor) / (ceiling - floor) of the episode's split, clipped at neither end.
+
+    Returns:
+        None where the split has no committed floor and ceiling.
+    """
+    if episode.split not in reference_scores():
+        return None
+    floor, ceiling = (reference_scores()[episode.split][name] for name in ("floor", "ceiling"))
+    return (score(episode) - floor) / (ceiling - floor)
+
+
+# None says that an episode has no such value; means leave it out.
+Metric = Callable[[Episode], float | None]
+
+# The six that every table shows.
 METRICS: dict[str, Metric] = {
     "Score": score,
     "PE": packing_efficiency,
@@ -86,6 +141,14 @@ METRICS: dict[str, Metric] = {
     "TE": temporal_efficiency,
     "Success": success,
 }
+# Those that stand in files, on the page and in tables of their own.
+FURTHER_METRICS: dict[str, Metric] = {
+    "Rescaled": rescaled_score,
+    "Turn": turn_accuracy,
+    "Refused": refused_decisions,
+    "ED_c without refused": category_edit_similarity_without_refused,
+}
+ALL_METRICS = METRICS | FURTHER_METRICS
 
 # A failed grasp may be tried again, as the noisy split invites to; the third time it is a loop.
 LOOP = 3

@@ -3,29 +3,32 @@
 import csv
 import io
 import json
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import asdict, astuple
 
 from rich.table import Table
 from rich.text import Text
 
-from kitchen_prefs.metrics import METRICS, Interval
-from kitchen_prefs_leaderboard.scoring import Entry, rounded
+from kitchen_prefs.metrics import FURTHER_METRICS, METRICS, Interval
+from kitchen_prefs_leaderboard.scoring import Entry
 from kitchen_prefs_leaderboard.verification import Verification
 
 
 def to_tables(entry: Entry, by: str | None) -> Iterator[Table]:
     """An entry's metrics for the terminal."""
     title = f"{entry.submission.name}: means, and their 95 % intervals"
-    metrics = _table(title, "Split", *METRICS)
-    for split, of_split in entry.metrics.items():
-        metrics.add_row(split, *_cells(of_split))
-    yield metrics
-    if by:
-        groups = _table(f"{title}, by {by}", "Split", *METRICS)
-        for split, of_groups in entry.grouped(by).items():
-            for group, of_group in of_groups.items():
-                groups.add_row(f"{split}\n{by} {group}", *_cells(of_group))
-        yield groups
+    grouped = entry.grouped(by) if by else {}
+    for names in (METRICS, FURTHER_METRICS):  # all of them are wider than a terminal
+        metrics = _table(title, "Split", *names)
+        for split, of_split in entry.metrics.items():
+            metrics.add_row(split, *_cells(of_split, names))
+        yield metrics
+        if by:
+            groups = _table(f"{title}, by {by}", "Split", *names)
+            for split, of_groups in grouped.items():
+                for group, of_group in of_groups.items():
+                    groups.add_row(f"{split}\n{by} {group}", *_cells(of_group, names))
+            yield groups
     reasons = _table("Episodes that fell short", "Split", *next(iter(entry.failure_modes.values())))
     for split, counts in entry.failure_modes.items():
         reasons.add_row(split, *map(str, counts.values()))
@@ -42,7 +45,7 @@ def to_comparison(found: Verification) -> Table:
 
 
 def to_verdict(found: Verification) -> str:
-    """What a re-run says of a submission, in a sentence."""
+    """Whether a re-run confirms a submission, in a sentence."""
     alike = f"{found.same:.0%} of the episodes went alike"
     if found.confirmed:
         return f"The re-run confirms the submission; {alike}."
@@ -76,11 +79,11 @@ def to_csv(entries: Sequence[Entry], by: str | None) -> str:
         who = [entry.submission.name, entry.submission.track]
         for split, of_split in entry.metrics.items():
             for name, interval in of_split.items():
-                writer.writerow([*who, split, "all", name, *rounded(interval).values()])
+                writer.writerow([*who, split, "all", name, *astuple(interval.rounded())])
         for split, of_groups in (entry.grouped(by) if by else {}).items():
             for group, of_group in of_groups.items():
                 for name, interval in of_group.items():
-                    writer.writerow([*who, split, group, name, *rounded(interval).values()])
+                    writer.writerow([*who, split, group, name, *astuple(interval.rounded())])
     return file.getvalue()
 
 
@@ -94,8 +97,12 @@ def _table(title: str, *heads: str) -> Table:
     return table
 
 
-def _cells(metrics: Mapping[str, Interval]) -> list[str]:
-    return [f"{of.mean:.3f}\n{_short(of.low)} {_short(of.high)}" for of in metrics.values()]
+def _cells(metrics: Mapping[str, Interval], names: Iterable[str]) -> list[str]:
+    return [_cell(metrics[name]) if name in metrics else "-" for name in names]
+
+
+def _cell(of: Interval) -> str:
+    return f"{of.mean:.3f}\n{_short(of.low)} {_short(of.high)}"
 
 
 def _short(value: float) -> str:
@@ -105,6 +112,6 @@ def _short(value: float) -> str:
 
 def _tree(tree: dict) -> dict:
     return {
-        key: rounded(value) if isinstance(value, Interval) else _tree(value)
+        key: asdict(value.rounded()) if isinstance(value, Interval) else _tree(value)
         for key, value in tree.items()
     }

@@ -1,9 +1,9 @@
-"""What a submission is worth: every metric, from replays alone."""
+"""Scores submissions: every metric, from replays alone."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from functools import cached_property
 from itertools import product
 from pathlib import Path
@@ -12,13 +12,13 @@ from tqdm import tqdm
 
 from kitchen_prefs.datasets.manifest import published_fingerprint
 from kitchen_prefs.metrics import (
-    METRICS,
     Episode,
     Interval,
     failure_modes,
     mean_of_splits,
+    mean_of_splits_all,
     score,
-    summarise,
+    summarise_all,
 )
 from kitchen_prefs.splits import DATA_VERSION, TEST_SPLITS
 from kitchen_prefs_leaderboard.replay import replay_split
@@ -26,12 +26,11 @@ from kitchen_prefs_leaderboard.submission_format import Submission
 from kitchen_prefs_leaderboard.submission_reading import SubmissionFiles, read_submission
 
 MEAN = "mean"  # stands beside the splits' names: each split counts the same
-DIGITS = 4  # the bootstrap tells no more than three; a fourth keeps rounding out of them
 
 
 @dataclass(frozen=True)
 class Entry:
-    """A submission and what its actions led to.
+    """A submission and the episodes of its actions.
 
     Attributes:
         submission: Who acted.
@@ -46,13 +45,8 @@ class Entry:
     @cached_property
     def metrics(self) -> dict[str, dict[str, Interval]]:
         """Each metric on each test split, and its mean over them."""
-        of_splits = {
-            split: {name: summarise(episodes, metric) for name, metric in METRICS.items()}
-            for split, episodes in self.episodes.items()
-        }
-        splits = list(self.episodes.values())
-        mean = {name: mean_of_splits(splits, metric) for name, metric in METRICS.items()}
-        return {**of_splits, MEAN: mean}
+        of_splits = {split: summarise_all(episodes) for split, episodes in self.episodes.items()}
+        return {**of_splits, MEAN: mean_of_splits_all(list(self.episodes.values()))}
 
     @cached_property
     def failure_modes(self) -> dict[str, dict[str, int]]:
@@ -70,10 +64,7 @@ class Entry:
         """
         return {
             split: {
-                str(group): {
-                    name: summarise([e for e in episodes if getattr(e, by) == group], metric)
-                    for name, metric in METRICS.items()
-                }
+                str(group): summarise_all([e for e in episodes if getattr(e, by) == group])
                 for group in sorted({getattr(episode, by) for episode in episodes})
             }
             for split, episodes in self.episodes.items()
@@ -138,11 +129,6 @@ def difference(
     """
     theirs = {(e.split, e.session): score(e) for of in others.values() for e in of}
     return mean_of_splits(list(episodes.values()), lambda e: score(e) - theirs[e.split, e.session])
-
-
-def rounded(interval: Interval) -> dict[str, float]:
-    """Mean, low and high as they are written."""
-    return {name: round(value, DIGITS) for name, value in asdict(interval).items()}
 
 
 def _replay(

@@ -7,6 +7,7 @@ a submission: VERIFICATIONS/<digest of the submission>.json.
 
 import secrets
 from collections.abc import Mapping, Sequence
+from dataclasses import asdict
 from math import hypot
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -16,7 +17,7 @@ from pydantic import Field, ValidationError
 from kitchen_prefs.envs.session_choice import FRESH_SALTS
 from kitchen_prefs.metrics import Episode, Interval, mean_of_splits, score
 from kitchen_prefs.utils.files import write_json
-from kitchen_prefs_leaderboard.scoring import MEAN, Entry, difference, rounded
+from kitchen_prefs_leaderboard.scoring import MEAN, Entry, difference
 from kitchen_prefs_leaderboard.submission_format import (
     Hash,
     Name,
@@ -185,4 +186,4 @@ def _named(policy: Policy) -> str:
 
 
 def _means(interval: Interval) -> Means:
-    return Means(**rounded(interval))
+    return Means(**asdict(interval.rounded()))

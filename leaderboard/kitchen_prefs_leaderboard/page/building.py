@@ -8,12 +8,20 @@ import base64
 import hashlib
 import json
 from collections.abc import Mapping, Sequence
+from dataclasses import astuple
 from importlib.resources import files
 from pathlib import Path
 from string import Template
 from typing import Any
 
-from kitchen_prefs.metrics import METRICS, Episode, Interval, packing_efficiency, summarise
+from kitchen_prefs.metrics import (
+    ALL_METRICS,
+    Episode,
+    Interval,
+    packing_efficiency,
+    reference_scores,
+    summarise,
+)
 from kitchen_prefs.splits import DATA_VERSION, TEST_SPLITS, get_split
 from kitchen_prefs.utils.files import atomic_file
 from kitchen_prefs_leaderboard.page.page_data import (
@@ -23,11 +31,11 @@ from kitchen_prefs_leaderboard.page.page_data import (
     sessions_data,
 )
 from kitchen_prefs_leaderboard.ranking import Row
-from kitchen_prefs_leaderboard.scoring import MEAN, rounded
+from kitchen_prefs_leaderboard.scoring import MEAN
 
 TEMPLATES = files("kitchen_prefs_leaderboard.page") / "templates"
 # In this order they make up one script.
-SCRIPTS = ("basics", "table", "charts", "shortcomings", "kitchen", "drawing", "player", "page")
+SCRIPTS = ("basics", "table", "charts", "failure_modes", "kitchen", "drawing", "player", "page")
 # What is drawn by the number of dishes: a split with training's numbers and one with others.
 BY_COUNT = {
     "Preferences of the training": ("seen", "unseen_counts"),
@@ -59,7 +67,8 @@ def page_data(tables: Mapping[str, Sequence[Row]]) -> dict[str, Any]:
     return {
         "version": DATA_VERSION,
         "mean": MEAN,
-        "metrics": list(METRICS),
+        "references": reference_scores(),
+        "metrics": list(ALL_METRICS),
         "splits": {split: get_split(split).sessions for split in TEST_SPLITS},
         "reasons": list(rows[0].entry.failure_modes[TEST_SPLITS[0]]),
         "entries": [_entry_data(row) for row in rows],
@@ -115,7 +124,7 @@ def _by_count(episodes: Sequence[Episode]) -> list[list[float]]:
 
 
 def _numbers(interval: Interval) -> list[float]:
-    return list(rounded(interval).values())
+    return list(astuple(interval.rounded()))
 
 
 def _harmless(data: Mapping[str, Any]) -> str:

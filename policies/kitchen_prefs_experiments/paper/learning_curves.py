@@ -11,7 +11,6 @@ from kitchen_prefs.evaluation.checkpoint_selection import select_checkpoint
 from kitchen_prefs_experiments.lerobot_train import TrainingRun
 from kitchen_prefs_experiments.paper.evaluated_policies import BASE
 from kitchen_prefs_experiments.paper.result_files import CheckpointResults, CurveResults, CurveRow
-from kitchen_prefs_experiments.paper.table_metrics import rounded
 from kitchen_prefs_experiments.paper.table_types import Curves
 from kitchen_prefs_experiments.recipes import recipe_file
 
@@ -83,7 +82,7 @@ def _curve(recipe: str, earlier: int, metrics: tuple[str, ...]) -> CurveRow:
         CheckpointResults(
             step=int(step),
             seconds=round(earlier + int(step) * seconds_per_step),
-            metrics={metric: rounded(of_step[metric]) for metric in metrics},
+            metrics={metric: of_step[metric].rounded() for metric in metrics},
         )
         for step, of_step in selection.metrics.items()
     ]

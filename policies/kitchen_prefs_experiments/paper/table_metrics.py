@@ -1,7 +1,6 @@
 """The metrics of a table's groups, from the episodes that evaluations wrote."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict
 from itertools import chain
 from statistics import mean
 
@@ -20,7 +19,6 @@ from kitchen_prefs_experiments.paper.result_files import GroupResults
 from kitchen_prefs_experiments.paper.table_types import Table
 
 PLACES = ("in top", "in bottom", "in sink")  # what a place decision chooses among
-DIGITS = 4  # the bootstrap is good for three; a fourth keeps rounding errors out of them
 
 
 def measure_groups(table: Table, policies: Sequence[PreparedPolicy]) -> dict[str, GroupResults]:
@@ -52,11 +50,6 @@ def pick_accuracy(episode: Episode) -> float:
     """
     pairs = zip(episode.kinds, episode.expert_kinds, strict=True)
     return mean(float(kind == expert) for kind, expert in pairs if expert not in PLACES)
-
-
-def rounded(interval: Interval) -> Interval:
-    """A mean and its interval as the result files hold them."""
-    return Interval(**{name: round(value, DIGITS) for name, value in asdict(interval).items()})
 
 
 def _episodes(policies: Sequence[PreparedPolicy], name: str) -> list[Episode]:
@@ -92,5 +85,5 @@ def _rollout_metrics(episodes: Sequence[Episode]) -> Iterator[tuple[str, Interva
 
 def _group(episodes: Sequence[Episode], metrics: Iterator[tuple[str, Interval]]) -> GroupResults:
     return GroupResults(
-        episodes=len(episodes), metrics={name: rounded(interval) for name, interval in metrics}
+        episodes=len(episodes), metrics={name: interval.rounded() for name, interval in metrics}
     )

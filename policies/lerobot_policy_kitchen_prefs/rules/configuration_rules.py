@@ -10,9 +10,11 @@ from kitchen_prefs.utils.suggestions import suggest
 
 NEEDS = {
     "random": (OBS_INSTANCES,),
+    "promptless": (OBS_INSTANCES,),
     "majority": (OBS_INSTANCES,),
     "nearest": (OBS_INSTANCES, OBS_PROMPT),
     "symbolic": (OBS_INSTANCES, OBS_PROMPT),
+    "bayes": (OBS_INSTANCES, OBS_PROMPT),
     "expert": (OBS_INSTANCES, OBS_PREFERENCE),
 }
 
@@ -25,7 +27,9 @@ class RulesConfig(PreTrainedConfig):
     Attributes:
         rule: "random" chooses any row; "majority" follows the most frequent training preference;
             "nearest" the training preference that explains the prompt best; "symbolic" the
-            preference that it infers from the prompt; "expert" the label (privileged track).
+            preference that it infers from the prompt; "promptless" the exact posterior over all
+            2 x 7! preferences given the session's dishes alone (the floor); "bayes" the posterior
+            given the prompt, too (the ceiling); "expert" the label (privileged track).
 
     Raises:
         ValueError: If the rule is unknown.

@@ -16,10 +16,17 @@ from kitchen_prefs.simulation.expert import choose
 from kitchen_prefs.simulation.sessions import preference_with
 from lerobot_policy_kitchen_prefs.rules.configuration_rules import RulesConfig
 from lerobot_policy_kitchen_prefs.rules.observed_view import Memory, ObservedView
+from lerobot_policy_kitchen_prefs.rules.posterior import (
+    PosteriorInference,
+    prompt_likelihood,
+    uniform_prior,
+)
 from lerobot_policy_kitchen_prefs.rules.preference_inference import (
     nearest_training_preference,
     symbolic_preference,
 )
+
+Inference = Callable[[ObservedView], Preference]  # the preference to act by now
 
 
 class RulesPolicy(PreTrainedPolicy):
@@ -36,7 +43,7 @@ class RulesPolicy(PreTrainedPolicy):
 
     def reset(self) -> None:
         """Forget the episodes."""
-        self._preferences: list[Preference] = []
+        self._inferences: list[Inference] = []
         self._memories: list[Memory] = []
 
     @torch.no_grad()
@@ -60,15 +67,15 @@ class RulesPolicy(PreTrainedPolicy):
         return torch.from_numpy(np.stack(poses))
 
     def _begin(self, batch: dict[str, Tensor], size: int) -> None:
-        """At an episode's first decision, find the preference of each environment's user."""
-        if not self._preferences:
-            self._preferences = PREFERENCES[self.config.rule](batch, size)
+        """At an episode's first decision, read each environment's prompt or label."""
+        if not self._inferences:
+            self._inferences = INFERENCES[self.config.rule](batch, size)
             self._memories = [Memory() for _ in range(size)]
 
     def _row(self, i: int, rows: np.ndarray) -> int:
         # Only the symbolic rule ignores closed racks: it acts on what is visible.
-        memory = None if self.config.rule == "symbolic" else self._memories[i]
-        return choose(ObservedView(rows, memory), self._preferences[i])
+        view = ObservedView(rows, None if self.config.rule == "symbolic" else self._memories[i])
+        return choose(view, self._inferences[i](view))
 
     def predict_action_chunk(self, batch: dict[str, Tensor], **_: Any) -> Tensor:
         """The action as a chunk of one, (B, 1, 7)."""
@@ -93,26 +100,45 @@ def _random_row(rows: np.ndarray) -> int:
     return int(generator.choice(np.flatnonzero(instances.choosable(rows))))
 
 
-def _majority(batch: dict[str, Tensor], size: int) -> list[Preference]:
+def _fixed(preference: Preference) -> Inference:
+    return lambda view: preference
+
+
+def _majority(batch: dict[str, Tensor], size: int) -> list[Inference]:
     """All seven are equally common in `train`; the first stands for them."""
-    return [SEEN[0]] * size
+    return [_fixed(SEEN[0])] * size
 
 
-def _nearest(batch: dict[str, Tensor], size: int) -> list[Preference]:
-    return [nearest_training_preference(prompt) for prompt in batch[OBS_PROMPT].cpu().numpy()]
+def _nearest(batch: dict[str, Tensor], size: int) -> list[Inference]:
+    return [_fixed(nearest_training_preference(prompt)) for prompt in _prompts(batch)]
 
 
-def _symbolic(batch: dict[str, Tensor], size: int) -> list[Preference]:
-    return [symbolic_preference(prompt) for prompt in batch[OBS_PROMPT].cpu().numpy()]
+def _symbolic(batch: dict[str, Tensor], size: int) -> list[Inference]:
+    return [_fixed(symbolic_preference(prompt)) for prompt in _prompts(batch)]
 
 
-def _expert(batch: dict[str, Tensor], size: int) -> list[Preference]:
-    return [preference_with(round(label)) for label in batch[OBS_PREFERENCE].flatten().tolist()]
+def _promptless(batch: dict[str, Tensor], size: int) -> list[Inference]:
+    return [PosteriorInference(uniform_prior()) for _ in range(size)]
 
 
-PREFERENCES: dict[str, Callable[[dict[str, Tensor], int], list[Preference]]] = {
+def _bayes(batch: dict[str, Tensor], size: int) -> list[Inference]:
+    return [PosteriorInference(prompt_likelihood(prompt)) for prompt in _prompts(batch)]
+
+
+def _expert(batch: dict[str, Tensor], size: int) -> list[Inference]:
+    labels = batch[OBS_PREFERENCE].flatten().tolist()
+    return [_fixed(preference_with(round(label))) for label in labels]
+
+
+def _prompts(batch: dict[str, Tensor]) -> np.ndarray:
+    return batch[OBS_PROMPT].cpu().numpy()  # (B, R, 14)
+
+
+INFERENCES: dict[str, Callable[[dict[str, Tensor], int], list[Inference]]] = {
     "majority": _majority,
     "nearest": _nearest,
     "symbolic": _symbolic,
+    "promptless": _promptless,
+    "bayes": _bayes,
     "expert": _expert,
 }

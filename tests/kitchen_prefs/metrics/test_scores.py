@@ -52,6 +52,7 @@ def episode_of(decisions=EXPERT, **facts) -> Episode:
         "refused": (False,) * len(decisions),
         "blocked_places": 0,
         "longest_loop": 0,
+        "turns": (2, 2),
         "closed_early": 0,
         "closed": True,
         "finished": True,

@@ -33,6 +33,7 @@ def episode(session, preference, *, placed=4, kinds=EXPERT):
         refused=(False,) * len(kinds),
         blocked_places=0,
         longest_loop=0,
+        turns=(0, 0),
         closed_early=0,
         closed=True,
         finished=True,

@@ -88,7 +88,9 @@ function rowOf(entry, columns) {
   return row;
 }
 
-function numbers([mean, low, high]) {
+function numbers(values) {
+  if (values === undefined) return html("td", { class: "number none" }, "\u2013");
+  const [mean, low, high] = values;
   return html("td", { class: "number" }, html("b", {}, fixed(mean)),
     html("small", {}, `${fixed(low)} to ${fixed(high)}`));
 }
@@ -99,7 +101,7 @@ function sorters(columns) {
     { title: "Rank", key: (entry) => data.entries.indexOf(entry), down: false },
     { title: "Name", key: (entry) => entry.submission.name.toLowerCase(), down: false },
     ...columns.map(({ title, values }) => ({
-      title, key: (entry) => values(entry)[0], down: true, number: true,
+      title, key: (entry) => (values(entry) ?? [-Infinity])[0], down: true, number: true,
     })),
   ];
 }
@@ -156,8 +158,16 @@ function block(title, remark, entries, columns) {
     ...entries.map((entry) => rowOf(entry, columns)));
 }
 
+/** Where the rescaled Score has its 0 and its 1. */
+function referencesInWords() {
+  const parts = Object.entries(data.references).map(([split, { floor, ceiling }]) =>
+    `${words(split)} ${fixed(floor)} to ${fixed(ceiling)}`);
+  return `Score of the floor (promptless) and of the ceiling (bayes): ${parts.join("; ")}.`;
+}
+
 function drawTables() {
   const columns = columnsOf(byId("columns").value);
+  byId("references").textContent = referencesInWords();
   const tracks = Object.keys(TRACKS).filter((track) =>
     data.entries.some(({ submission }) => submission.track === track));
   byId("tables").replaceChildren(...tracks.map((track) => trackTable(track, columns)));

@@ -18,7 +18,7 @@ function drawReasons() {
     html("small", {}, `of ${data.splits[split]}`)));
   const rows = data.reasons.map((name, reason) => html("tr", {}, html("th", { scope: "row" }, name),
     ...SPLITS.map((split) => reasonCell(index, split, reason))));
-  const title = `What went wrong for ${nameOf(index)}`;
+  const title = `Failure modes of ${nameOf(index)}`;
   byId("reasons-table").replaceChildren(html("table", { class: "reasons" },
     html("caption", { class: "unseen" }, title),
     html("thead", {}, html("tr", {}, html("th", { scope: "col" }, "Episodes"), ...heads)),
