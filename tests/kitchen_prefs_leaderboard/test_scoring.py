@@ -16,7 +16,7 @@ from rich.console import Console
 
 from kitchen_prefs import instances
 from kitchen_prefs.envs.episode_simulator import EpisodeSimulator
-from kitchen_prefs.metrics import METRICS, mean_of_splits, summarise
+from kitchen_prefs.metrics import ALL_METRICS, mean_of_splits, summarise
 from kitchen_prefs.simulation.sessions import make_session
 from kitchen_prefs.splits import TEST_SPLITS, get_split
 from kitchen_prefs_leaderboard.replay import replay, write_line
@@ -86,7 +86,7 @@ def test_a_submission_of_plain_python_is_scored(tmp_path):
     assert content["name"] == "By hand"
     assert list(content["splits"]) == [*TEST_SPLITS, "mean"]
     for metrics in content["splits"].values():
-        assert list(metrics) == list(METRICS)
+        assert list(metrics) == list(ALL_METRICS)
         assert all(one["low"] <= one["mean"] <= one["high"] for one in metrics.values())
         assert 0 < metrics["Score"]["mean"] < 0.5
         assert metrics["Success"]["mean"] == 0
@@ -99,9 +99,9 @@ def test_two_scorings_print_the_same_bytes(folder, entry, by):
 
 def test_a_replay_has_the_metrics_of_the_episodes_that_were_played(played, entry):
     for split, episodes in played.items():
-        assert entry.metrics[split] == {n: summarise(episodes, m) for n, m in METRICS.items()}
+        assert entry.metrics[split] == {n: summarise(episodes, m) for n, m in ALL_METRICS.items()}
     assert entry.metrics["mean"] == {
-        name: mean_of_splits(list(played.values()), metric) for name, metric in METRICS.items()
+        name: mean_of_splits(list(played.values()), metric) for name, metric in ALL_METRICS.items()
     }
 
 
@@ -113,7 +113,9 @@ def test_every_metric_of_every_split_is_printed_in_every_form(entry):
         (row["split"], row["metric"]): {end: float(row[end]) for end in ("mean", "low", "high")}
         for row in rows
     }
-    assert numbers == {(split, name): splits[split][name] for split in splits for name in METRICS}
+    assert numbers == {
+        (split, name): splits[split][name] for split in splits for name in ALL_METRICS
+    }
     assert numbers == {
         (split, name): {end: round(value, 4) for end, value in vars(interval).items()}
         for split, metrics in entry.metrics.items()
@@ -132,7 +134,7 @@ def test_the_groups_means_weighted_back_are_the_splits(entry, by):
     }
     for split, of_split in groups.items():
         labels = [str(getattr(episode, by)) for episode in entry.episodes[split]]
-        for name, metric in METRICS.items():
+        for name, metric in ALL_METRICS.items():
             mean = sum(of_split[label][name].mean for label in labels) / len(labels)
             assert mean == pytest.approx(entry.metrics[split][name].mean)
             first = [metric(e) for e in entry.episodes[split] if str(getattr(e, by)) == labels[0]]
@@ -159,7 +161,7 @@ def test_what_is_written_of_an_episode_is_that_episode(split, index, seed, jitte
     again = replay(split, line, "here")
     assert replace(again, actions=episode.actions) == episode
     np.testing.assert_allclose(again.actions, episode.actions, atol=5.1e-5, rtol=0)
-    values = {name: metric(again) for name, metric in METRICS.items()}
+    values = {name: metric(again) for name, metric in ALL_METRICS.items()}
     assert 0 <= values["Success"] <= values["PE"] <= 1
     assert 0 <= values["TE"] <= values["PE"]
     assert 0 <= values["Score"] <= 1
