@@ -16,9 +16,10 @@ from kitchen_prefs_leaderboard.verification import Verification
 
 def to_tables(entry: Entry, by: str | None) -> Iterator[Table]:
     """An entry's metrics for the terminal."""
-    title = f"{entry.submission.name}: means, and their 95 % intervals"
     grouped = entry.grouped(by) if by else {}
-    for names in (METRICS, FURTHER_METRICS):  # all of them are wider than a terminal
+    # In two parts, as all of them are wider than a terminal.
+    for names, which in ((METRICS, "means"), (FURTHER_METRICS, "further means")):
+        title = f"{entry.submission.name}: {which}, and their 95 % intervals"
         metrics = _table(title, "Split", *names)
         for split, of_split in entry.metrics.items():
             metrics.add_row(split, *_cells(of_split, names))

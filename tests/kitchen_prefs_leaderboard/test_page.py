@@ -193,7 +193,7 @@ def test_columns_show_every_metric_of_every_split(page, tables):
     for split in (scoring.MEAN, *TEST_SPLITS):
         page.get_by_label("Columns").select_option(f"split:{split}")
         shown = (
-            page.locator("td.number b").filter(visible=True).all_text_contents()[: 6 * len(rows)]
+            page.locator("td.number b").filter(visible=True).all_text_contents()[: 10 * len(rows)]
         )
         wanted = [i.mean for entry in rows for i in entry.metrics[split].values()]
         assert [float(text.replace("\u2212", "-")) for text in shown] == pytest.approx(

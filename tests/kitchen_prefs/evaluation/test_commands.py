@@ -19,6 +19,7 @@ from kitchen_prefs.envs.observations import ENVIRONMENT_STATE_SIZE, STATE_SIZE
 from kitchen_prefs.evaluation import commands
 from kitchen_prefs.evaluation.episode_files import read_episodes
 from kitchen_prefs.evaluation.policy_loading import load_policy
+from kitchen_prefs.metrics import METRICS
 
 
 @pytest.fixture
@@ -236,8 +237,8 @@ def test_evaluate_keeps_one_line_an_episode(tmp_path):
     result = call("evaluate", f"--policy.path={path}", "--split=noisy,seen,noisy", f"--out={out}")
     assert "Score" in result.output
     assert result.output.count("noisy, 5 episodes") == 1
-    assert result.output.count("mean of the splits") == 1
-    assert result.output.split("mean of the splits")[1].count("95 % from") == 1
+    assert result.output.count("mean of the splits") == 2  # the table and that of further metrics
+    assert result.output.split("mean of the splits")[-1].count("95 % from") == 1
     assert len(read_episodes(out / "noisy.jsonl")) == 5
     assert json.loads((out / "seen.json").read_text())["episodes"] == 5
 
@@ -256,7 +257,9 @@ def test_the_expert_rule_is_perfect(tmp_path):
     arguments = ("--policy.type=rules", "--policy.rule=expert", "--track=privileged")
     call("evaluate", *arguments, "--split=seen", f"--out={tmp_path}")
     metrics = json.loads((tmp_path / "seen.json").read_text())["metrics"]
-    assert {interval["low"] for interval in metrics.values()} == {1}
+    assert {metrics[name]["low"] for name in (*METRICS, "Turn", "ED_c without refused")} == {1}
+    assert metrics["Refused"]["high"] == 0
+    assert metrics["Rescaled"]["mean"] > 1  # the expert knows what no prompt tells
 
 
 @pytest.mark.parametrize("place", ["/proc/kitchen_prefs", "file", "file/below"])
