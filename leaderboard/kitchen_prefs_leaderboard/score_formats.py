@@ -19,7 +19,7 @@ def to_tables(entry: Entry, by: str | None) -> Iterator[Table]:
     grouped = entry.grouped(by) if by else {}
     # In two parts, as all of them are wider than a terminal.
     for names, which in ((METRICS, "means"), (FURTHER_METRICS, "further means")):
-        title = f"{entry.submission.name}: {which}, and their 95 % intervals"
+        title = f"{entry.submission.name}: {which} with 95 % intervals"
         metrics = _table(title, "Split", *names)
         for split, of_split in entry.metrics.items():
             metrics.add_row(split, *_cells(of_split, names))

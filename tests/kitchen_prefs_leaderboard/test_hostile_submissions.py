@@ -413,7 +413,7 @@ def test_a_terminal_shows_a_name_as_it_is(untouched_entry, name):
     with console.capture() as shown:
         console.print(*to_tables(Entry(about, "", untouched_entry.episodes), by="count"), sep="\n")
     titles = [line.strip() for line in shown.get().splitlines() if name in line]
-    means, further = (f"{name}: {which}, and their 95 % intervals" for which in WHICH)
+    means, further = (f"{name}: {which} with 95 % intervals" for which in WHICH)
     assert titles == [means, f"{means}, by count", further, f"{further}, by count"]
 
 
