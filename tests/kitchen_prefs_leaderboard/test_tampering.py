@@ -11,6 +11,8 @@ from kitchen_prefs_leaderboard.submission_reading import read_submission
 
 SEEN = "seen.jsonl.bz2"
 
+pytestmark = pytest.mark.slow  # a whole submission is made
+
 
 def lines_of(folder):
     return bz2.decompress((folder / SEEN).read_bytes()).splitlines()
@@ -31,7 +33,6 @@ def refused(folder, message):
     return str(error.value)
 
 
-@pytest.mark.slow
 def test_an_honest_submission_is_the_expert(submission):
     (entry,) = score_submissions([submission], 1)
     for split, metrics in entry.metrics.items():
@@ -41,7 +42,6 @@ def test_an_honest_submission_is_the_expert(submission):
         )
 
 
-@pytest.mark.slow
 def test_the_same_files_give_the_same_entry(submission):
     first, second = (score_submissions([submission], 1)[0] for _ in range(2))
     assert first == second

@@ -169,6 +169,7 @@ def test_it_ends_at_twice_the_experts_decisions():
     assert env.episode().longest_loop == limit
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("split", SPLITS)
 def test_no_published_session_is_longer_than_lerobots_constant(split):
     longest = max(

@@ -187,3 +187,34 @@ def test_leaving_on_the_counter_what_the_expert_sinks_is_no_success():
     assert not episode.finished
     assert not success(episode)
     assert failure_modes(episode)["closed early"] == 1
+
+
+# Turn: of the moments when dishes of several ranks waited for the open rack ----------------------
+
+
+def picks_of(decisions):
+    """Where in some decisions dishes are picked."""
+    return [i for i, instance in enumerate(decisions) if FIRST_DISH <= instance < SINK]
+
+
+def test_the_expert_always_takes_the_dish_whose_turn_it_is():
+    right, turns = play(EXPERT).turns
+    assert right == turns
+    # All but the dishes of the last category of each rack are picked while another one waits.
+    last = {SESSION.preference.order(rack)[-1] for rack in RACKS}
+    others = [dish for rack in RACKS for dish in dishes_for(rack) if category_of(dish) not in last]
+    assert turns == len(others)
+
+
+def category_of(dish):
+    return CATEGORIES[SESSION.dishes.category[dish]]
+
+
+def test_the_last_category_first_is_a_wrong_turn_and_a_refused_decision_is_none():
+    rack = FIRST
+    last = next(d for d in dishes_for(rack) if category_of(d) == SESSION.preference.order(rack)[-1])
+    start = [DOOR, RACK_INSTANCE[rack]]
+    assert play([*start, FIRST_DISH + last]).turns == (0, 1)
+    assert play([*start, DOOR]).turns == (0, 0)  # refused: the door moves with both racks in
+    assert play([*start, RACK_INSTANCE[rack]]).turns == (0, 1)  # closes while dishes wait
+    assert play(EXPERT[:3]).turns == (1, 1)

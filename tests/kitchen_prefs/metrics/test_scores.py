@@ -1,4 +1,4 @@
-"""The metrics by hand-worked examples, their bounds, and their intervals."""
+"""The metrics by hand-worked examples, and their bounds."""
 
 from dataclasses import replace
 
@@ -6,70 +6,28 @@ import pytest
 import textdistance
 from hypothesis import given
 from hypothesis import strategies as st
+from made_up_episodes import CUPS, TRAY, episode_of, episodes
 from textdistance.algorithms.base import libraries
 
 from kitchen_prefs.metrics import (
     METRICS,
-    Episode,
     category_accuracy,
     category_edit_similarity,
     edit_similarity,
     failure_modes,
     packing_efficiency,
-    prompt_use,
+    reference_scores,
     score,
     success,
-    summarise,
     temporal_efficiency,
 )
-
-KIND = {0: "door", 1: "bottom rack", 2: "top rack", 3: "cup", 4: "cup", 5: "tray", 999: "in sink"}
-KIND |= {1000 + k: "in bottom" for k in range(3)} | {2000 + k: "in top" for k in range(3)}
-
-# Two cups into the top rack, a tray into the bottom one.
-CUPS = (2, 3, 2000, 4, 2001, 2)
-TRAY = (1, 5, 1000, 1)
-EXPERT = (0, *CUPS, *TRAY, 0)
-
-
-def episode_of(decisions=EXPERT, **facts) -> Episode:
-    """An episode in which the expert decides EXPERT and the policy the given decisions."""
-    perfect = {
-        "split": "seen",
-        "session": 0,
-        "salt": 0,
-        "preference": 0,
-        "count": 2,
-        "decisions": decisions,
-        "kinds": tuple(KIND[d] for d in decisions),
-        "expert_decisions": EXPERT,
-        "expert_kinds": tuple(KIND[d] for d in EXPERT),
-        "placed": (2, 1),
-        "expert_placed": (2, 1),
-        "wrong_rack": 0,
-        "sunk": 0,
-        "expert_sunk": 0,
-        "refused": (False,) * len(decisions),
-        "blocked_places": 0,
-        "longest_loop": 0,
-        "turns": (2, 2),
-        "closed_early": 0,
-        "closed": True,
-        "finished": True,
-        "actions": ((0.0,) * 7,) * len(decisions),
-    }
-    return Episode(**(perfect | facts))
-
-
-episodes = st.builds(
-    lambda decisions, **facts: episode_of(tuple(decisions), **facts),
-    st.lists(st.sampled_from(sorted(KIND)), max_size=2 * len(EXPERT)),
-    placed=st.tuples(st.integers(0, 5), st.integers(0, 5)),
-    expert_placed=st.tuples(st.integers(0, 5), st.integers(0, 5)),
-    preference=st.integers(0, 3),
-    closed=st.booleans(),
-    finished=st.booleans(),
+from kitchen_prefs.metrics.scores import (
+    category_edit_similarity_without_refused,
+    refused_decisions,
+    rescaled_score,
+    turn_accuracy,
 )
+from kitchen_prefs.splits import TEST_SPLITS
 
 
 def test_the_expert_is_perfect():
@@ -134,19 +92,12 @@ def test_category_accuracy_counts_the_experts_categories():
     assert category_accuracy(choices) == pytest.approx(11 / 12)
 
 
-def test_sinking_what_the_expert_sinks_is_no_shortcoming():
+def test_sinking_what_the_expert_sinks_is_no_failure():
     reasons = failure_modes(episode_of(sunk=3, expert_sunk=2, closed_early=2, blocked_places=1))
     assert reasons["sunk without need"] == 1
     assert reasons["closed early"] == 2
     assert reasons["blocked place"] == 1
     assert failure_modes(episode_of(sunk=1, expert_sunk=2))["sunk without need"] == 0
-
-
-def test_facts_that_do_not_agree_are_refused():
-    with pytest.raises(ValueError, match=r"session 0 of seen.*differ in length"):
-        replace(episode_of(), refused=())
-    with pytest.raises(ValueError, match="nothing to compare"):
-        replace(episode_of(), expert_decisions=(), expert_kinds=())
 
 
 @given(episodes)
@@ -158,6 +109,41 @@ def test_bounds(episode):
     assert 1 - max(p, e) / e <= edit_similarity(episode) <= category_edit_similarity(episode) <= 1
     assert (edit_similarity(episode) == 1) == (episode.decisions == episode.expert_decisions)
     assert success(episode) <= packing_efficiency(episode)
+    assert 0 <= turn_accuracy(episode) <= 1
+    assert 0 <= refused_decisions(episode) <= p
+    assert 1 - max(p, e) / e <= category_edit_similarity_without_refused(episode) <= 1
+    # A decision more or less moves the distance by one at most.
+    gain = category_edit_similarity_without_refused(episode) - category_edit_similarity(episode)
+    assert abs(gain) <= refused_decisions(episode) / e + 1e-9
+
+
+@given(episodes, st.sampled_from(TEST_SPLITS))
+def test_the_rescaled_score_is_0_at_the_floor_and_1_at_the_ceiling(episode, split):
+    reference = reference_scores()[split]
+    assert 0 < reference["floor"] < reference["ceiling"] < 1
+    episode = replace(episode, split=split)
+    between = reference["floor"] + rescaled_score(episode) * (
+        reference["ceiling"] - reference["floor"]
+    )
+    assert between == pytest.approx(score(episode))
+
+
+def test_a_split_without_floor_and_ceiling_has_no_rescaled_score():
+    assert rescaled_score(episode_of(split="val")) is None
+
+
+def test_turns_are_shared_out():
+    assert turn_accuracy(episode_of(turns=(3, 4))) == 3 / 4
+    assert turn_accuracy(episode_of(turns=(0, 0))) is None
+
+
+def test_refused_decisions_are_counted_and_left_out_of_the_order():
+    tried_twice = (0, 2, 3, 2001, 2000, 4, 2001, 2, *TRAY, 0)
+    refused = tuple(i == 3 for i in range(len(tried_twice)))
+    episode = episode_of(tried_twice, refused=refused)
+    assert refused_decisions(episode) == 1
+    assert category_edit_similarity(episode) == pytest.approx(1 - 1 / 12)
+    assert category_edit_similarity_without_refused(episode) == 1
 
 
 @given(episodes)
@@ -186,62 +172,3 @@ def test_rapidfuzz_is_the_engine(monkeypatch):
     monkeypatch.setattr(engine, "func", lambda policy, expert: 6)
     assert edit_similarity(episode_of((0, 1))) == 1 - 6 / 12
     assert category_edit_similarity(episode_of((0, 1))) == 1 - 6 / 12
-
-
-# Intervals ------------------------------------------------------------------------------------
-
-
-def spread(split, packed_by_preference):
-    """Episodes whose top rack got 2 of 2 (PE 1) or 0 of 2 (PE 1/2), by preference."""
-    flags = [(label, packed) for label, all_ in packed_by_preference.items() for packed in all_]
-    return [
-        episode_of(split=split, session=i, preference=label, placed=(2 * packed, 1))
-        for i, (label, packed) in enumerate(flags)
-    ]
-
-
-def test_an_interval_is_as_wide_as_theory_says():
-    interval = summarise(spread("seen", {0: [True, False] * 50}), packing_efficiency)
-    assert interval.mean == 0.75
-    # Standard error of a mean of 100 fair choices between 1/2 and 1: .025.
-    assert interval.high - interval.low == pytest.approx(2 * 1.96 * 0.025, rel=0.1)
-
-
-def test_sessions_are_resampled_within_preferences():
-    differing = {0: [True] * 10, 1: [False] * 10}
-    fixed = summarise(spread("seen", differing), packing_efficiency)
-    assert fixed.low == fixed.high == fixed.mean == 0.75
-
-
-def test_on_many_preferences_the_preferences_are_resampled():
-    differing = {label: [label % 2 == 0] * 2 for label in range(40)}
-    sampled = summarise(spread("many_preferences", differing), packing_efficiency)
-    # Forty independent preferences, however many sessions each: standard error .25 / sqrt(40).
-    assert sampled.high - sampled.low == pytest.approx(2 * 1.96 * 0.25 / 40**0.5, rel=0.15)
-
-
-def test_single_sessions_do_not_make_an_interval_vanish():
-    interval = summarise(spread("seen", {0: [True], 1: [False], 2: [True]}), packing_efficiency)
-    assert interval.low < interval.mean < interval.high
-
-
-@given(st.lists(episodes, min_size=1, max_size=12))
-def test_an_interval_encloses_its_mean_and_is_repeatable(some):
-    interval = summarise(some, packing_efficiency)
-    assert interval.low - 1e-9 <= interval.mean <= interval.high + 1e-9
-    assert summarise(some, packing_efficiency) == interval
-
-
-def test_nothing_cannot_be_summarised():
-    with pytest.raises(ValueError, match="no episodes"):
-        summarise([], packing_efficiency)
-
-
-def test_prompt_use_pairs_sessions():
-    right = spread("seen", {0: [True] * 8, 1: [True, False] * 4})
-    ignoring = prompt_use(right, right[::-1])
-    assert (ignoring.mean, ignoring.low, ignoring.high) == (0, 0, 0)
-    other = [replace(episode, placed=(0, 1)) for episode in right]
-    assert prompt_use(right, other).mean == pytest.approx(12 / 16 / 2)
-    with pytest.raises(ValueError, match="the same sessions"):
-        prompt_use(right, other[:-1])

@@ -4,6 +4,9 @@ import numpy as np
 import pytest
 
 from kitchen_prefs.envs.demonstrations import prompt_of
+from kitchen_prefs.evaluation.policy_loading import load_policy
+from kitchen_prefs.evaluation.rollouts import roll_out
+from kitchen_prefs.metrics import packing_efficiency, score
 from kitchen_prefs.preferences import preference_from_number, preference_number
 from kitchen_prefs.simulation.expert import choose
 from kitchen_prefs.simulation.sessions import make_session
@@ -42,3 +45,36 @@ def test_the_preference_of_a_session_is_always_possible(index):
     for so_far in range(session.dishes.present, len(session.dishes.category) + 1):
         dishes = np.bincount(session.dishes.category[:so_far], minlength=7)
         assert session_likelihood(tuple(dishes.tolist()), session.dishes.present)[partition] > 0
+
+
+def decisions(rule, sessions, **options):
+    """The decisions of a rule in sessions of unseen_preferences, by session."""
+    policy = load_policy(policy_type="rules", options=[f"--rule={rule}"])
+    episodes = roll_out(policy, "unseen_preferences", sessions=sessions, **options)
+    return {episode.session: episode.decisions for episode in episodes}
+
+
+@pytest.mark.parametrize("rule", ["promptless", "bayes"])
+def test_the_other_episodes_of_a_batch_change_nothing(rule):
+    together = decisions(rule, [0, 25, 50])
+    assert decisions(rule, [50, 99, 0]).items() >= {0: together[0], 50: together[50]}.items()
+    assert decisions(rule, [25], batch_size=1)[25] == together[25]
+
+
+def test_the_floor_reads_no_prompt_and_the_ceiling_does():
+    sessions = range(0, 100, 25)
+    for rule, ignores_it in (("promptless", True), ("bayes", False)):
+        same, other = (decisions(rule, sessions, prompt_of=whose) for whose in ("same", "other"))
+        assert (same == other) == ignores_it
+
+
+def test_the_floor_lies_in_the_middle_and_the_ceiling_near_the_top():
+    mean = {}
+    for rule in ("promptless", "bayes"):
+        policy = load_policy(policy_type="rules", options=[f"--rule={rule}"])
+        episodes = roll_out(policy, "unseen_preferences", sessions=range(0, 100, 10))
+        mean[rule] = [
+            np.mean([metric(e) for e in episodes]) for metric in (packing_efficiency, score)
+        ]
+    assert mean["promptless"] == pytest.approx([0.66, 0.57], abs=0.08)
+    assert mean["bayes"] == pytest.approx([1, 0.985], abs=0.015)
