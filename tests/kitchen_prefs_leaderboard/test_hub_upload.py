@@ -13,6 +13,8 @@ from typer.testing import CliRunner
 from kitchen_prefs.splits import TEST_SPLITS, get_split
 from kitchen_prefs_leaderboard import commands, hub_upload
 
+pytestmark = pytest.mark.slow  # most tests start the hub's client in a process of its own
+
 BOARD = "bob/leaderboard"
 SPACE = "ada/leaderboard"
 DESCRIPTION = {

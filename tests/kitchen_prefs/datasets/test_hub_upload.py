@@ -9,7 +9,10 @@ from hub_server import Commit, Repository, kitchen_prefs, run
 from kitchen_prefs.datasets import dataset_root, make_dataset
 from kitchen_prefs.datasets.hub_upload import push_dataset
 
-pytestmark = pytest.mark.xdist_group("datasets_hub_upload")  # one fixture of the module serves all
+pytestmark = [
+    pytest.mark.xdist_group("datasets_hub_upload"),  # one fixture of the module serves all
+    pytest.mark.slow,  # most tests start the hub's client in a process of its own
+]
 
 SMALL = "dishwasher-train-p1-d1-v1"
 REPO_ID = f"ada/{SMALL}"
