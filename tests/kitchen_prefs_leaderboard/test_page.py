@@ -212,12 +212,12 @@ def test_columns_show_every_metric_of_every_split(page, tables):
 
 def test_the_further_metrics_are_those_of_the_committed_scores(page):
     (expert,) = (entry for entry in committed_scores() if entry["name"] == "expert")
-    heads = page.locator('[data-track="standard"] thead th').all_text_contents()
-    row = page.locator('[data-track="standard"] tbody[data-block="re-run"] td.number b')
+    heads = page.locator('[data-track="privileged"] thead th').all_text_contents()
+    row = page.locator('[data-track="privileged"] tbody[data-block="re-run"] td.number b')
     shown = dict(zip(heads[3:], row.all_text_contents(), strict=True))
-    assert "Rescaledfloor 0, ceiling 1" in shown
+    assert "Rescaledfloor\u00a00, ceiling\u00a01" in shown
     for head, text in list(shown.items())[-len(FURTHER_METRICS) :]:
-        metric = head.removesuffix("floor 0, ceiling 1")
+        metric = head.removesuffix("floor\u00a00, ceiling\u00a01")
         assert metric in FURTHER_METRICS
         assert float(text) == pytest.approx(expert["splits"]["mean"][metric]["mean"], abs=6e-4)
 
@@ -235,7 +235,7 @@ def test_floor_and_ceiling_are_those_of_the_committed_scores(page):
     ]
     page.get_by_label("Columns").select_option("metric:Rescaled")
     head = page.locator('[data-track="open"] thead th', has_text="noisy").text_content()
-    assert head == f"noisyfloor {ends['promptless'][-1]}, ceiling {ends['bayes'][-1]}"
+    assert head == f"noisyfloor\u00a0{ends['promptless'][-1]}, ceiling\u00a0{ends['bayes'][-1]}"
 
 
 def test_ticked_rows_are_in_the_charts(page):

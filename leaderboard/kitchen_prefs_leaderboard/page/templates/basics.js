@@ -12,7 +12,9 @@ const SVG = "http://www.w3.org/2000/svg";
 
 const byId = (id) => document.getElementById(id);
 const words = (name) => name.replaceAll("_", " ");
-const fixed = (value, digits = 3) => value.toFixed(digits).replace("-", "\u2212");
+/** A number with a real minus sign, and none before a zero. */
+const fixed = (value, digits = 3) =>
+  value.toFixed(digits).replace(/^-(?=[0.]*$)/, "").replace("-", "\u2212");
 const short = (value) => fixed(value).replace(/^(\u2212?)0\./, "$1."); // in narrow columns
 
 /** Give an element attributes and children. No string is ever parsed as HTML. */

@@ -16,7 +16,7 @@ function column(title, metric, split) {
 function referenceNote(split) {
   const { floor, ceiling } = data.references[split] ?? { floor: 0, ceiling: 1 };
   const digits = split in data.references ? 3 : 0;
-  return `floor ${fixed(floor, digits)}, ceiling ${fixed(ceiling, digits)}`;
+  return `floor\u00a0${fixed(floor, digits)}, ceiling\u00a0${fixed(ceiling, digits)}`;
 }
 
 function rankOf(entry) {
