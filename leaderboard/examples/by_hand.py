@@ -18,7 +18,7 @@ folder.mkdir(parents=True)
 about = {
     "format": 1,
     "name": "By hand",
-    "authors": ["A. Person"],
+    "authors": ["A. Author"],
     "track": "standard",
     "policy": {"type": "by_hand"},
     "data_version": 1,

@@ -107,8 +107,9 @@ def _cell(of: Interval) -> str:
 
 
 def _short(value: float) -> str:
-    """Two decimals, and no zero before the point."""
-    return f"{value:.2f}".replace("0.", ".", 1)
+    """Two decimals, and no zero alone before the point."""
+    text = f"{value:.2f}"
+    return text.replace("0.", ".", 1) if abs(value) < 1 else text
 
 
 def _tree(tree: dict) -> dict:

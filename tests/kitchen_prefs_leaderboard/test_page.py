@@ -10,6 +10,7 @@ from typer.testing import CliRunner
 
 from kitchen_prefs import instances
 from kitchen_prefs.envs.episode_simulator import EpisodeSimulator
+from kitchen_prefs.metrics import ALL_METRICS, FURTHER_METRICS
 from kitchen_prefs.simulation import kitchen as k
 from kitchen_prefs.simulation.sessions import make_session
 from kitchen_prefs.splits import TEST_SPLITS, get_split
@@ -22,6 +23,7 @@ from kitchen_prefs_leaderboard.verification import Means, Verification
 CHROMIUM = Path("/usr/bin/chromium")
 PATIENCE = 120_000  # milliseconds; the machine may be busy
 HTML_NAME = "<img src=x onerror=document.title='run'></script><b>"
+SCORES = Path(__file__).parents[2] / "leaderboard" / "scores.json"
 PHONE = {"width": 390, "height": 844}
 
 pytestmark = [
@@ -32,8 +34,8 @@ pytestmark = [
 ]
 
 
-def played_carelessly(split, index):
-    """An episode that begins with a forbidden decision and puts all into the top rack."""
+def careless_episode(split, index):
+    """An episode that begins with a refused decision and puts all dishes into the top rack."""
     simulator = EpisodeSimulator(make_session(split, index))
 
     def decide(instance):
@@ -56,10 +58,10 @@ def played_carelessly(split, index):
 
 @pytest.fixture(scope="module")
 def entries(expert_submission):
-    """The expert, which was run again, and three more on two tracks, which were not."""
+    """The expert, with a re-run, and three more on two tracks, without."""
     (expert,) = score_submissions([expert_submission], 1)
     careless = {
-        split: [played_carelessly(split, i) for i in range(get_split(split).sessions)]
+        split: [careless_episode(split, i) for i in range(get_split(split).sessions)]
         for split in TEST_SPLITS
     }
 
@@ -121,17 +123,17 @@ def browser():
 
 @pytest.fixture
 def page(browser, file):
-    """The page, opened; at the end nothing was complained of and nothing was fetched."""
+    """The page, opened; at the end the console is empty and nothing was fetched."""
     page = browser.new_page(viewport={"width": 1280, "height": 900})
     page.set_default_timeout(PATIENCE)
-    complaints, requests = [], []
-    page.on("console", lambda message: complaints.append(message.text))
-    page.on("pageerror", lambda error: complaints.append(str(error)))
+    messages, requests = [], []
+    page.on("console", lambda message: messages.append(message.text))
+    page.on("pageerror", lambda error: messages.append(str(error)))
     page.on("request", lambda request: requests.append(request.url))
     page.goto(file.as_uri())
     yield page
     page.close()
-    assert complaints == []
+    assert messages == []
     assert [url for url in requests if not url.startswith("data:")] == [file.as_uri()]
 
 
@@ -141,12 +143,17 @@ def names(page, track="privileged", block="replayed only"):
     return rows.all_text_contents()
 
 
+def committed_scores():
+    """The scores of this repository's entries."""
+    return json.loads(SCORES.read_text())
+
+
 def open_careless(page):
     """Open the first session of the imperfect entry."""
-    page.locator("#player-entry").select_option(label="Careless (privileged)")
+    page.locator("#viewer-entry").select_option(label="Careless (privileged)")
 
 
-def test_ranked_rows_stand_first_and_the_others_have_no_rank(page):
+def test_ranked_rows_come_first_and_the_others_have_no_rank(page):
     assert names(page, block="re-run") == ["The expert"]
     assert names(page) == ["Honest", "Careless"]
     ranks = page.locator('[data-track="privileged"] td.rank').all_text_contents()
@@ -192,9 +199,8 @@ def test_columns_show_every_metric_of_every_split(page, tables):
     rows = [row.entry for of_track in tables.values() for row in of_track]
     for split in (scoring.MEAN, *TEST_SPLITS):
         page.get_by_label("Columns").select_option(f"split:{split}")
-        shown = (
-            page.locator("td.number b").filter(visible=True).all_text_contents()[: 10 * len(rows)]
-        )
+        shown = page.locator("#tables td.number b").all_text_contents()
+        assert len(shown) == 10 * len(rows) == len(ALL_METRICS) * len(rows)
         wanted = [i.mean for entry in rows for i in entry.metrics[split].values()]
         assert [float(text.replace("\u2212", "-")) for text in shown] == pytest.approx(
             wanted, abs=6e-4
@@ -204,10 +210,38 @@ def test_columns_show_every_metric_of_every_split(page, tables):
     assert heads == ["Show", "Rank", "Name", "mean", *(s.replace("_", " ") for s in TEST_SPLITS)]
 
 
-def test_ticked_rows_stand_in_the_pictures(page):
+def test_the_further_metrics_are_those_of_the_committed_scores(page):
+    (expert,) = (entry for entry in committed_scores() if entry["name"] == "expert")
+    heads = page.locator('[data-track="privileged"] thead th').all_text_contents()
+    row = page.locator('[data-track="privileged"] tbody[data-block="re-run"] td.number b')
+    shown = dict(zip(heads[3:], row.all_text_contents(), strict=True))
+    assert "Rescaledfloor\u00a00, ceiling\u00a01" in shown
+    for head, text in list(shown.items())[-len(FURTHER_METRICS) :]:
+        metric = head.removesuffix("floor\u00a00, ceiling\u00a01")
+        assert metric in FURTHER_METRICS
+        assert float(text) == pytest.approx(expert["splits"]["mean"][metric]["mean"], abs=6e-4)
+
+
+def test_floor_and_ceiling_are_those_of_the_committed_scores(page):
+    by_name = {entry["name"]: entry["splits"] for entry in committed_scores()}
+    rows = page.locator("#references tbody tr").all_text_contents()
+    ends = {
+        name: [f"{by_name[name][split]['Score']['mean']:.3f}" for split in TEST_SPLITS]
+        for name in ("promptless", "bayes")
+    }
+    assert rows == [
+        "floor: promptless" + "".join(ends["promptless"]),
+        "ceiling: bayes" + "".join(ends["bayes"]),
+    ]
+    page.get_by_label("Columns").select_option("metric:Rescaled")
+    head = page.locator('[data-track="open"] thead th', has_text="noisy").text_content()
+    assert head == f"noisyfloor\u00a0{ends['promptless'][-1]}, ceiling\u00a0{ends['bayes'][-1]}"
+
+
+def test_ticked_rows_are_in_the_charts(page):
     assert page.locator("#chart-legend li").count() == 4
     assert page.locator("#by-split svg").count() == len(TEST_SPLITS)
-    page.get_by_label("Show Careless in the pictures").uncheck()
+    page.get_by_label("Show Careless in the charts").uncheck()
     assert page.locator("#chart-legend li").count() == 3
     assert "Careless" not in page.locator("#by-count svg").first.get_attribute("aria-label")
 
@@ -233,7 +267,9 @@ def test_an_episode_steps_to_its_end(page, entries):
     episode = entries[1].episodes["seen"][0]
     page.get_by_role("button", name="Next").click()
     assert (
-        page.locator("#policy-said").text_content().startswith("forbidden: pulls the top rack out")
+        page.locator("#policy-decision")
+        .text_content()
+        .startswith("refused: pulls the top rack out")
     )
     page.get_by_role("button", name="Last").click()
     decided = len(episode.decisions)
@@ -249,11 +285,11 @@ def test_an_episode_steps_to_its_end(page, entries):
     assert expert.count() == sum(episode.expert_placed)
 
 
-def test_every_episode_ends_as_the_kitchen_says(page, tables):
+def test_every_episode_ends_as_in_the_kitchen(page, tables):
     ends = page.evaluate(
         """() => data.entries.map((entry) => SPLITS.map((split) =>
-            entry.episodes[split].map(([decisions, forbidden], number) => {
-                const { steps } = replay(data.sessions[split][number], decisions, forbidden);
+            entry.episodes[split].map(([decisions, refused], number) => {
+                const { steps } = replay(data.sessions[split][number], decisions, refused);
                 const { places, doorOpen, out } = steps.at(-1).state;
                 const count = (place) => places.filter((one) => one === place).length;
                 return [count("top") + count("bottom"), count("sink"), !doorOpen && out === null];
@@ -269,9 +305,9 @@ def test_every_episode_ends_as_the_kitchen_says(page, tables):
     ]
 
 
-def test_the_keyboard_plays(page):
+def test_the_keyboard_steps(page):
     open_careless(page)
-    page.locator("#player").focus()
+    page.locator("#viewer").focus()
     slider = page.locator("#slider")
     for key, step in (("ArrowRight", 1), ("ArrowRight", 2), ("ArrowLeft", 1), ("Home", 0)):
         page.keyboard.press(key)
@@ -282,15 +318,15 @@ def test_the_keyboard_plays(page):
     page.keyboard.press("ArrowLeft")
     assert int(slider.input_value()) == int(slider.get_attribute("max")) - 1
     page.get_by_role("button", name="Play").press("Enter")
-    page.get_by_role("button", name="Pause").wait_for(state="hidden")  # one step, and it is done
+    page.get_by_role("button", name="Pause").wait_for(state="hidden")  # one step, then the end
     assert slider.input_value() == slider.get_attribute("max")
 
 
-def test_a_shortcoming_opens_its_episodes(page, entries):
-    page.locator("#reasons-entry").select_option(label="Careless (privileged)")
+def test_a_failure_mode_opens_its_episodes(page, entries):
+    page.locator("#failure-modes-entry").select_option(label="Careless (privileged)")
     wrong = entries[1].failure_modes["seen"]["wrong rack"]
     page.get_by_role("button", name=f"{wrong} episodes of seen: wrong rack").click()
-    assert page.locator("#player-session option").count() == wrong
+    assert page.locator("#viewer-session option").count() == wrong
     assert "wrong rack" in page.locator("#episode-facts").text_content()
 
 

@@ -7,6 +7,7 @@ import subprocess
 import sys
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -17,7 +18,7 @@ from short_splits import SESSIONS, short_splits
 
 from kitchen_prefs import instances
 from kitchen_prefs.envs.episode_simulator import EpisodeSimulator
-from kitchen_prefs.metrics import ALL_METRICS, mean_of_splits, summarise
+from kitchen_prefs.metrics import ALL_METRICS, Interval, mean_of_splits, summarise
 from kitchen_prefs.simulation.sessions import make_session
 from kitchen_prefs.splits import TEST_SPLITS
 from kitchen_prefs_leaderboard.replay import replay, write_line
@@ -72,6 +73,21 @@ def printed(entry, by):
     console = Console(width=200, record=True, file=io.StringIO())
     console.print(*to_tables(entry, by))
     return [to_json([entry], by), to_csv([entry], by), console.export_text()]
+
+
+def test_the_terminal_keeps_the_tens_of_an_interval():
+    entry = SimpleNamespace(
+        submission=SimpleNamespace(name="act"),
+        metrics={
+            "seen": {"Refused": Interval(20.4, 20.1, 30.25), "Turn": Interval(0.2, -0.1, 1.0)}
+        },
+        failure_modes={"seen": {"wrong rack": 0}},
+    )
+    console = Console(width=200, record=True, file=io.StringIO())
+    console.print(*to_tables(entry, None))
+    text = console.export_text()
+    assert "20.10 30.25" in text
+    assert "-.10 1.00" in text
 
 
 @pytest.mark.slow

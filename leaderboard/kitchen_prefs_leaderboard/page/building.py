@@ -1,7 +1,7 @@
 """Building the page: entries as plain data, and the data in the page.
 
-What a submission says is a stranger's. It stands in the page as JSON in which no HTML can begin,
-and the scripts show it as text alone.
+A submission is untrusted input. The page holds it as JSON in which no HTML can begin, and the
+scripts show it as text alone.
 """
 
 import base64
@@ -34,12 +34,12 @@ from kitchen_prefs_leaderboard.ranking import Row
 from kitchen_prefs_leaderboard.scoring import MEAN
 
 TEMPLATES = files("kitchen_prefs_leaderboard.page") / "templates"
-# In this order they make up one script.
-SCRIPTS = ("basics", "table", "charts", "failure_modes", "kitchen", "drawing", "player", "page")
-# What is drawn by the number of dishes: a split with training's numbers and one with others.
+# Joined in this order into one script.
+SCRIPTS = ("basics", "table", "charts", "failure_modes", "kitchen", "drawing", "viewer", "page")
+# Charts by the number of dishes: a split with the counts of training, and one with other counts.
 BY_COUNT = {
-    "Preferences of the training": ("seen", "unseen_counts"),
-    "Preferences that training does not see": ("unseen_preferences", "unseen_both"),
+    "Training preferences": ("seen", "unseen_counts"),
+    "Held-out preferences": ("unseen_preferences", "unseen_both"),
 }
 # Nothing is fetched, nothing is sent, and only this file's own style and script are used.
 POLICY = (
@@ -70,7 +70,7 @@ def page_data(tables: Mapping[str, Sequence[Row]]) -> dict[str, Any]:
         "references": reference_scores(),
         "metrics": list(ALL_METRICS),
         "splits": {split: get_split(split).sessions for split in TEST_SPLITS},
-        "reasons": list(rows[0].entry.failure_modes[TEST_SPLITS[0]]),
+        "failure_modes": list(rows[0].entry.failure_modes[TEST_SPLITS[0]]),
         "entries": [_entry_data(row) for row in rows],
         "layout": layout_data(),
         "preferences": preferences_in_words(sessions),
@@ -86,7 +86,7 @@ def to_html(data: Mapping[str, Any]) -> str:
         policy=POLICY.format(style=_hash(style), script=_hash(script)),
         style=style,
         script=script,
-        data=_harmless(data),
+        data=_escaped_json(data),
     )
 
 
@@ -106,7 +106,7 @@ def _entry_data(row: Row) -> dict[str, Any]:
             name: _by_count([episode for split in splits for episode in entry.episodes[split]])
             for name, splits in BY_COUNT.items()
         },
-        "shortcomings": {split: list(of.values()) for split, of in entry.failure_modes.items()},
+        "failure_modes": {split: list(of.values()) for split, of in entry.failure_modes.items()},
         "episodes": {
             split: [episode_data(episode) for episode in episodes]
             for split, episodes in entry.episodes.items()
@@ -127,8 +127,8 @@ def _numbers(interval: Interval) -> list[float]:
     return list(astuple(interval.rounded()))
 
 
-def _harmless(data: Mapping[str, Any]) -> str:
-    """JSON in which neither a tag nor a character reference can stand."""
+def _escaped_json(data: Mapping[str, Any]) -> str:
+    """JSON that contains neither a tag nor a character reference."""
     text = json.dumps(data, separators=(",", ":"), allow_nan=False)
     for character in "<>&":
         text = text.replace(character, f"\\u{ord(character):04x}")
@@ -140,6 +140,6 @@ def _template(name: str) -> str:
 
 
 def _hash(content: str) -> str:
-    """How a content security policy names what stands in a style or script element."""
+    """How a content security policy names the content of a style or script element."""
     digest = hashlib.sha256(content.encode()).digest()
     return f"'sha256-{base64.b64encode(digest).decode()}'"

@@ -1,8 +1,8 @@
 """What the page draws of episodes, as numbers that are short in JSON.
 
-A dish is seen from above. It is drawn as the shadow of an ellipsoid of its extents: an ellipse with
-a centre, two half axes and an angle; lengths are in millimetres, angles in degrees. What a decision
-changes is replayed by the page itself (kitchen.js).
+A dish is seen from above. It is drawn as the projection of an ellipsoid of its extents: an ellipse
+with a centre, two half axes and an angle; lengths are in millimetres, angles in degrees. The page
+itself replays what a decision changes (kitchen.js).
 """
 
 from collections.abc import Iterable
@@ -44,14 +44,14 @@ def layout_data() -> dict:
         "sink": [_millimetres(layout.SINK_CENTRE), _millimetres(layout.SINK_SIZE[:2])],
         "rack": _millimetres(layout.RACK_INNER),
         "placements": [
-            [int(category), *_shadow(layout.EXTENTS[CATEGORIES[category]], pose)]
+            [int(category), *_projection(layout.EXTENTS[CATEGORIES[category]], pose)]
             for category, pose in zip(table.category, table.pose["top"] - origin, strict=True)
         ],
     }
 
 
 def session_data(split: str, index: int) -> dict:
-    """A session's dishes and what the expert does with them."""
+    """A session's dishes and the expert's decisions."""
     session = make_session(split, index)
     expert = expert_trajectory(session)
     return {
@@ -64,20 +64,20 @@ def session_data(split: str, index: int) -> dict:
 
 
 def episode_data(episode: Episode) -> list:
-    """What a policy decided and what came of it.
+    """A policy's decisions in an episode, and their result.
 
     Returns:
-        Decisions; which of them were forbidden; Score, PE and ED_c; whether it is a success; one
-        bit for each of `failure_modes`.
+        Decisions; the steps at which they were refused; Score, PE and ED_c; whether it is a
+        success; one bit for each of `failure_modes`.
     """
     metrics = (score, packing_efficiency, category_edit_similarity)
-    reasons = failure_modes(episode).values()
+    modes = failure_modes(episode).values()
     return [
         episode.decisions,
         [step for step, refused in enumerate(episode.refused) if refused],
         [round(metric(episode), DIGITS) for metric in metrics],
         int(success(episode)),
-        sum((times > 0) << bit for bit, times in enumerate(reasons)),
+        sum((times > 0) << bit for bit, times in enumerate(modes)),
     ]
 
 
@@ -103,8 +103,8 @@ def _on_counter(session: Session) -> list[int]:
     return np.round(np.stack(columns, axis=1)).astype(int).ravel().tolist()
 
 
-def _shadow(extents: tuple[float, float, float], pose: np.ndarray) -> list[int]:
-    """Centre, half axes and angle of an ellipsoid's shadow on the floor."""
+def _projection(extents: tuple[float, float, float], pose: np.ndarray) -> list[int]:
+    """Centre, half axes and angle of an ellipsoid's projection onto the floor."""
     rotation = Rotation.from_quat(pose[3:], scalar_first=True).as_matrix()  # (3, 3)
     axes = rotation * (np.array(extents) / 2)  # (3, 3), a half axis each column
     squares, directions = np.linalg.eigh((axes @ axes.T)[:2, :2])  # the shorter one first

@@ -1,6 +1,6 @@
 const COLOURS = 8;
 const SHAPES = ["circle", "square", "diamond", "triangle"];
-const PANEL = 340; // width of a picture, in its own units
+const PANEL = 340; // width of a chart, in its own units
 
 const PATHS = {
   circle: "M-4,0a4,4 0 1,0 8,0a4,4 0 1,0 -8,0",
@@ -28,7 +28,7 @@ const label = (x, y, text, name = "") => svg("text", { x, y, class: name }, text
 /** The ticked entries in the table's order. */
 const ticked = () => [...shown].sort((a, b) => a - b);
 
-/** From which tenth on the axis reaches to 1, so that all intervals are on it. */
+/** The tenth at which the axis begins; it ends at 1, and all intervals are on it. */
 function lowest(values) {
   return Math.max(0, Math.floor(10 * Math.min(0.9, ...values)) / 10);
 }
@@ -44,16 +44,16 @@ function splitPanel(split, rows, low) {
   const [left, right, pitch, top] = [112, PANEL - 46, 20, 8];
   const height = top + rows.length * pitch + 22;
   const x = (value) => left + ((value - low) / (1 - low)) * (right - left);
-  const picture = svg("svg", { viewBox: `0 0 ${PANEL} ${height}`, role: "img" });
+  const chart = svg("svg", { viewBox: `0 0 ${PANEL} ${height}`, role: "img" });
   const inWords = [];
   for (const tick of axisTicks(low)) {
-    picture.append(svg("path", { class: "grid", d: `M${x(tick)},${top}V${height - 20}` }),
+    chart.append(svg("path", { class: "grid", d: `M${x(tick)},${top}V${height - 20}` }),
       label(x(tick), height - 6, tick.toFixed(1), "middle faint"));
   }
   rows.forEach((index, row) => {
     const [mean, from, to] = data.entries[index].metrics[split].PE;
     const y = top + (row + 0.5) * pitch;
-    picture.append(
+    chart.append(
       svg("g", {}, svg("title", {}, nameOf(index)), label(0, y + 4, shorten(nameOf(index), 17))),
       bar(index, [x(from), y], [x(to), y]),
       mark(index, x(mean), y),
@@ -61,12 +61,12 @@ function splitPanel(split, rows, low) {
     );
     inWords.push(`${nameOf(index)} ${fixed(mean)}, ${fixed(from)} to ${fixed(to)}`);
   });
-  picture.setAttribute("aria-label", `PE on ${words(split)}: ${inWords.join("; ")}`);
-  return panel(words(split), picture);
+  chart.setAttribute("aria-label", `PE on ${words(split)}: ${inWords.join("; ")}`);
+  return panel(words(split), chart);
 }
 
-function panel(title, picture) {
-  return html("figure", { class: "card panel" }, html("figcaption", {}, title), picture);
+function panel(title, chart) {
+  return html("figure", { class: "card panel" }, html("figcaption", {}, title), chart);
 }
 
 function countPanel(title, rows, low) {
@@ -75,25 +75,25 @@ function countPanel(title, rows, low) {
   const [fewest, most] = [counts[0], counts.at(-1)];
   const x = (count) => left + 10 + ((count - fewest) / (most - fewest)) * (right - left - 20);
   const y = (value) => bottom - ((value - low) / (1 - low)) * (bottom - top);
-  const picture = svg("svg", { viewBox: `0 0 ${PANEL} 228`, role: "img" });
+  const chart = svg("svg", { viewBox: `0 0 ${PANEL} 228`, role: "img" });
   for (const tick of axisTicks(low)) {
-    picture.append(svg("path", { class: "grid", d: `M${left},${y(tick)}H${right}` }),
+    chart.append(svg("path", { class: "grid", d: `M${left},${y(tick)}H${right}` }),
       label(left - 6, y(tick) + 4, tick.toFixed(1), "end faint"));
   }
-  for (const count of counts) picture.append(label(x(count), bottom + 16, count, "middle faint"));
-  picture.append(label((left + right) / 2, bottom + 34, "dishes per rack", "middle faint"));
+  for (const count of counts) chart.append(label(x(count), bottom + 16, count, "middle faint"));
+  chart.append(label((left + right) / 2, bottom + 34, "dishes per rack", "middle faint"));
   const inWords = rows.map((index, row) => {
     const shift = (row - (rows.length - 1) / 2) * Math.min(4, 20 / rows.length);
-    picture.append(countLine(index, title, (count) => x(count) + shift, y));
+    chart.append(countLine(index, title, (count) => x(count) + shift, y));
     const means = data.entries[index].by_count[title];
     const each = means.map(([count, mean]) => `${count}: ${fixed(mean)}`);
     return `${nameOf(index)} ${each.join(", ")}`;
   });
-  picture.setAttribute("aria-label", `PE by dishes per rack. ${title}. ${inWords.join("; ")}`);
-  return panel(title, picture);
+  chart.setAttribute("aria-label", `PE by dishes per rack. ${title}. ${inWords.join("; ")}`);
+  return panel(title, chart);
 }
 
-/** One entry's line; lines stand a little beside each other, so that all bars can be seen. */
+/** One entry's line, shifted a little so that the bars of all entries can be seen. */
 function countLine(index, title, x, y) {
   const points = data.entries[index].by_count[title];
   const line = points.map(([count, mean]) => `${x(count)},${y(mean)}`).join("L");

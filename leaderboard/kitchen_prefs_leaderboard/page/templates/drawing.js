@@ -113,11 +113,11 @@ function drawKitchen(state, dishes, title) {
     drawRack(state, "top", drawn.top), drawRack(state, "bottom", drawn.bottom));
 }
 
-/** All decisions as a ribbon, those to come fainter. */
-function drawRibbon(steps, now, length) {
-  const cells = steps.slice(1).map(({ sort, refused }, i) => svg("rect", {
+/** All decisions as a timeline, the later ones fainter. */
+function drawTimeline(steps, now, length) {
+  const cells = steps.slice(1).map(({ kind, refused }, i) => svg("rect", {
     x: i + 0.06, y: refused ? 0 : 2, width: 0.88, height: refused ? 10 : 8,
-    class: `${refused ? "refused" : sort}${i >= now ? " ahead" : ""}`,
+    class: `${refused ? "refused" : kind}${i >= now ? " ahead" : ""}`,
   }));
   const viewBox = `0 0 ${length} 10`;
   return svg("svg", { viewBox, preserveAspectRatio: "none", "aria-hidden": "true" }, ...cells);

@@ -1,10 +1,10 @@
-/** One cell: in how many episodes of a split it happened; it opens them in the player. */
-function reasonCell(index, split, reason) {
-  const times = data.entries[index].shortcomings[split][reason];
+/** In how many episodes of a split a failure mode occurs; a click opens them in the viewer. */
+function failureModeCell(index, split, mode) {
+  const times = data.entries[index].failure_modes[split][mode];
   if (times === 0) return html("td", { class: "number none" }, "0");
   const share = Math.round((100 * times) / data.splits[split]);
-  const click = () => openEpisodes(index, split, `reason:${reason}`);
-  const title = `${times} episodes of ${words(split)}: ${data.reasons[reason]}`;
+  const click = () => openEpisodes(index, split, `mode:${mode}`);
+  const title = `${times} episodes of ${words(split)}: ${data.failure_modes[mode]}`;
   const open = html("button", { type: "button", click, "aria-label": title }, String(times));
   const small = html("small", {}, share ? `${share} %` : "< 1 %");
   const cell = html("td", { class: "number tinted" }, open, small);
@@ -12,21 +12,22 @@ function reasonCell(index, split, reason) {
   return cell;
 }
 
-function drawReasons() {
-  const index = Number(byId("reasons-entry").value);
+function drawFailureModes() {
+  const index = Number(byId("failure-modes-entry").value);
   const heads = SPLITS.map((split) => html("th", { scope: "col", class: "number" }, words(split),
     html("small", {}, `of ${data.splits[split]}`)));
-  const rows = data.reasons.map((name, reason) => html("tr", {}, html("th", { scope: "row" }, name),
-    ...SPLITS.map((split) => reasonCell(index, split, reason))));
+  const rows = data.failure_modes.map((name, mode) => html("tr", {},
+    html("th", { scope: "row" }, name),
+    ...SPLITS.map((split) => failureModeCell(index, split, mode))));
   const title = `Failure modes of ${nameOf(index)}`;
-  byId("reasons-table").replaceChildren(html("table", { class: "reasons" },
+  byId("failure-modes-table").replaceChildren(html("table", { class: "failure-modes" },
     html("caption", { class: "unseen" }, title),
     html("thead", {}, html("tr", {}, html("th", { scope: "col" }, "Episodes"), ...heads)),
     html("tbody", {}, ...rows)));
 }
 
-function startReasons() {
-  setOptions(byId("reasons-entry"), entryChoices());
-  byId("reasons-entry").addEventListener("change", drawReasons);
-  drawReasons();
+function startFailureModes() {
+  setOptions(byId("failure-modes-entry"), entryChoices());
+  byId("failure-modes-entry").addEventListener("change", drawFailureModes);
+  drawFailureModes();
 }

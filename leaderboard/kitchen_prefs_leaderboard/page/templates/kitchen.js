@@ -1,5 +1,5 @@
-// The kitchen's rules as far as a drawing needs them; kitchen_prefs/kitchen.py has them all. Which
-// decisions were forbidden is known and not found out here.
+// The kitchen's rules as far as a drawing needs them; kitchen_prefs/simulation/kitchen.py has them
+// all. Which decisions were refused comes with the data and is not computed here.
 
 const [DOOR, FIRST_DISH, SINK] = [0, 3, 999];
 const FIRST_PLACEMENT = { bottom: 1000, top: 2000 };
@@ -22,7 +22,7 @@ function kitchenAtStart(session, dishes) {
     out: null,
     held: null,
     moved: null, // the dish that the last decision moved
-    places: dishes.map((_, i) => (i < session.present ? "counter" : "to come")),
+    places: dishes.map((_, i) => (i < session.present ? "counter" : "to arrive")),
     placements: dishes.map(() => null),
     completed: 0,
     arrived: session.present,
@@ -32,7 +32,7 @@ function kitchenAtStart(session, dishes) {
 
 const rackOfPlacement = (instance) => (instance >= FIRST_PLACEMENT.top ? "top" : "bottom");
 
-/** Carry out a decision that is not forbidden. */
+/** Carry out a decision that is not refused. */
 function carryOut(state, instance) {
   state.moved = null;
   if (state.held === null && instance >= FIRST_DISH) {
@@ -67,7 +67,7 @@ function complete(state) {
 /** What a decision does, before it is carried out. */
 function inWords(state, dishes, instance) {
   if (state.held !== null) {
-    if (instance === SINK) return "drops it in the sink";
+    if (instance === SINK) return "puts it into the sink";
     return `puts it into the ${rackOfPlacement(instance)} rack`;
   }
   if (instance === DOOR) return state.doorOpen ? "closes the door" : "opens the door";
@@ -78,17 +78,17 @@ function inWords(state, dishes, instance) {
   return `picks a ${data.layout.categories[dishes[instance - FIRST_DISH].category]}`;
 }
 
-/** Why a decision is forbidden. */
-function whyNot(state, instance) {
-  if (state.held !== null) return "another dish stands in the way";
+/** Why a decision is refused. */
+function whyRefused(state, instance) {
+  if (state.held !== null) return "another dish is in the way";
   if (instance === DOOR) return "a rack is still out";
   if (instance in RACK_OF) return state.doorOpen ? "the other rack is out" : "the door is closed";
   const onCounter = state.places[instance - FIRST_DISH] === "counter";
-  return onCounter ? "the grasp fails" : "it stays in its rack";
+  return onCounter ? "the grasp fails" : "it is in a rack already";
 }
 
-/** What sort of thing a decision chooses: it colours the ribbon. */
-function sortOf(dishes, instance) {
+/** The kind of instance that a decision chooses: it colours the timeline. */
+function kindOf(dishes, instance) {
   if (instance === SINK) return "sink";
   if (instance >= FIRST_PLACEMENT.bottom) return rackOfPlacement(instance);
   if (instance >= FIRST_DISH) return `pick d${dishes[instance - FIRST_DISH].category}`;
@@ -96,20 +96,20 @@ function sortOf(dishes, instance) {
 }
 
 /** The kitchen at the start and after each decision. */
-function replay(session, decisions, forbidden = []) {
+function replay(session, decisions, refusedSteps = []) {
   const dishes = dishesOf(session);
   let state = kitchenAtStart(session, dishes);
-  const steps = [{ state, text: "before the first decision", refused: false, sort: "" }];
+  const steps = [{ state, text: "before the first decision", refused: false, kind: "" }];
   decisions.forEach((instance, number) => {
-    const refused = forbidden.includes(number);
+    const refused = refusedSteps.includes(number);
     const text = inWords(state, dishes, instance);
-    const reason = refused ? whyNot(state, instance) : "";
+    const reason = refused ? whyRefused(state, instance) : "";
     state = structuredClone(state);
     if (refused) state.moved = null;
     else carryOut(state, instance);
     steps.push({
-      state, refused, sort: sortOf(dishes, instance),
-      text: refused ? `forbidden: ${text}; ${reason}` : text,
+      state, refused, kind: kindOf(dishes, instance),
+      text: refused ? `refused: ${text}; ${reason}` : text,
     });
   });
   return { dishes, steps };

@@ -2,15 +2,15 @@ function startTheme() {
   const root = document.documentElement;
   const system = matchMedia("(prefers-color-scheme: dark)");
   const dark = () => (root.dataset.theme ? root.dataset.theme === "dark" : system.matches);
-  const say = () => { byId("theme").textContent = dark() ? "Light" : "Dark"; };
+  const showLabel = () => { byId("theme").textContent = dark() ? "Light" : "Dark"; };
   byId("theme").addEventListener("click", () => {
     root.dataset.theme = dark() ? "light" : "dark";
-    say();
+    showLabel();
   });
-  say();
+  showLabel();
 }
 
-function sayFacts() {
+function showFacts() {
   const episodes = Object.values(data.splits).reduce((sum, sessions) => sum + sessions, 0);
   byId("facts").textContent = [`${data.entries.length} entries`,
     `${SPLITS.length} test splits, ${episodes} episodes each`,
@@ -18,8 +18,8 @@ function sayFacts() {
 }
 
 startTheme();
-sayFacts();
+showFacts();
 startTables();
 drawCharts();
-startReasons();
-startPlayer();
+startFailureModes();
+startViewer();

@@ -1,18 +1,22 @@
 const shown = new Set(); // the entries whose boxes are ticked
 
-/** What a view of the table shows: all metrics of one split, or one metric on all splits. */
+/** The columns of a view: all metrics of one split, or one metric on all splits. */
 function columnsOf(view) {
   const [kind, name] = view.split(":");
-  if (kind === "split") {
-    return data.metrics.map((metric) => ({
-      title: metric,
-      values: (entry) => entry.metrics[name][metric],
-    }));
-  }
-  return [data.mean, ...SPLITS].map((split) => ({
-    title: words(split),
-    values: (entry) => entry.metrics[split][name],
-  }));
+  if (kind === "split") return data.metrics.map((metric) => column(metric, metric, name));
+  return [data.mean, ...SPLITS].map((split) => column(words(split), name, split));
+}
+
+function column(title, metric, split) {
+  const note = metric === "Rescaled" ? referenceNote(split) : "";
+  return { title, note, values: (entry) => entry.metrics[split][metric] };
+}
+
+/** The Scores at which the rescaled Score of a split is 0 and 1. */
+function referenceNote(split) {
+  const { floor, ceiling } = data.references[split] ?? { floor: 0, ceiling: 1 };
+  const digits = split in data.references ? 3 : 0;
+  return `floor\u00a0${fixed(floor, digits)}, ceiling\u00a0${fixed(ceiling, digits)}`;
 }
 
 function rankOf(entry) {
@@ -21,16 +25,15 @@ function rankOf(entry) {
 }
 
 function badges(entry) {
-  const again = entry.rank !== null;
+  const rerun = entry.rank !== null;
   return html(
     "span",
     { class: "badges" },
-    html("span", { class: "badge" }, entry.submission.track),
-    html("span", { class: again ? "badge good" : "badge" }, again ? "re-run" : "replayed only"),
+    html("span", { class: rerun ? "badge good" : "badge" }, rerun ? "re-run" : "replayed only"),
   );
 }
 
-/** Everything that an entry says of itself, and what its re-run came to. */
+/** An entry's description, and the result of its re-run. */
 function about(entry) {
   const { submission, verification } = entry;
   const { type, parameters, checkpoint } = submission.policy;
@@ -41,12 +44,12 @@ function about(entry) {
     ["Policy", type + size],
     ["Hardware", submission.hardware],
     ["Training", submission.training],
-    ["Programs", packages.join(", ")],
+    ["Packages", packages.join(", ")],
     ["Submission", entry.digest],
   ];
-  if (submission.link !== null) facts.splice(1, 0, ["More", linkTo(submission.link)]);
+  if (submission.link !== null) facts.splice(1, 0, ["Link", linkTo(submission.link)]);
   if (checkpoint !== null) facts.push(["Checkpoint", checkpoint]);
-  if (verification !== null) facts.push(["Re-run", rerunInWords(verification)]);
+  if (verification !== null) facts.push(["Re-run", rerunText(verification)]);
   return html(
     "dl",
     { class: "about" },
@@ -54,11 +57,12 @@ function about(entry) {
   );
 }
 
-function rerunInWords({ same, replayed, rerun, fresh, salt }) {
-  const scores = [["replayed", replayed], ["run again", rerun], [`fresh (salt ${salt})`, fresh]];
+function rerunText({ same, replayed, rerun, fresh, salt }) {
+  const fresher = `fresh sessions (seed ${salt})`;
+  const scores = [["replayed", replayed], ["re-run", rerun], [fresher, fresh]];
   const parts = scores.map(([name, { mean, low, high }]) =>
     `${name} ${fixed(mean)} (${fixed(low)} to ${fixed(high)})`);
-  return `${Math.round(100 * same)} % of the episodes decided alike. Score: ${parts.join(", ")}.`;
+  return `${Math.round(100 * same)} % of the episodes have the same decisions. Score: ${parts.join(", ")}.`;
 }
 
 function rowOf(entry, columns) {
@@ -66,7 +70,7 @@ function rowOf(entry, columns) {
   const { name, authors } = entry.submission;
   const box = html("input", {
     type: "checkbox",
-    "aria-label": `Show ${name} in the pictures`,
+    "aria-label": `Show ${name} in the charts`,
     change: () => {
       if (box.checked) shown.add(index);
       else shown.delete(index);
@@ -92,16 +96,16 @@ function numbers(values) {
   if (values === undefined) return html("td", { class: "number none" }, "\u2013");
   const [mean, low, high] = values;
   return html("td", { class: "number" }, html("b", {}, fixed(mean)),
-    html("small", {}, `${fixed(low)} to ${fixed(high)}`));
+    html("small", {}, `${short(low)} to ${short(high)}`));
 }
 
-/** What rows are sorted by: a key for each column, and whether large ones come first. */
+/** The sort key of each column, and whether large values come first. */
 function sorters(columns) {
   return [
     { title: "Rank", key: (entry) => data.entries.indexOf(entry), down: false },
     { title: "Name", key: (entry) => entry.submission.name.toLowerCase(), down: false },
-    ...columns.map(({ title, values }) => ({
-      title, key: (entry) => (values(entry) ?? [-Infinity])[0], down: true, number: true,
+    ...columns.map(({ title, note, values }) => ({
+      title, note, key: (entry) => (values(entry) ?? [-Infinity])[0], down: true, number: true,
     })),
   ];
 }
@@ -127,10 +131,11 @@ function headerOf(table, sorter) {
     sortBy(table, header, sorter, now ? now === "ascending" : sorter.down);
   };
   header.append(html("button", { type: "button", click }, sorter.title));
+  if (sorter.note) header.append(html("small", { class: "note" }, sorter.note));
   return header;
 }
 
-/** A track's table: the ranked entries, then those that were only replayed. */
+/** A track's table: the ranked entries, then those without a re-run. */
 function trackTable(track, columns) {
   const entries = data.entries.filter(({ submission }) => submission.track === track);
   const table = html("table", {}, html("caption", { class: "unseen" }, `${track} track`));
@@ -158,16 +163,21 @@ function block(title, remark, entries, columns) {
     ...entries.map((entry) => rowOf(entry, columns)));
 }
 
-/** Where the rescaled Score has its 0 and its 1. */
-function referencesInWords() {
-  const parts = Object.entries(data.references).map(([split, { floor, ceiling }]) =>
-    `${words(split)} ${fixed(floor)} to ${fixed(ceiling)}`);
-  return `Score of the floor (promptless) and of the ceiling (bayes): ${parts.join("; ")}.`;
+/** The Scores of floor and ceiling on each split. */
+function referenceTable() {
+  const head = (text, scope, name = "") => html("th", { scope, class: name }, text);
+  const row = (name, policy) => html("tr", {},
+    html("th", { scope: "row" }, `${name}: ${policy}`),
+    ...SPLITS.map((split) => html("td", { class: "number" }, fixed(data.references[split][name]))));
+  return html("table", { class: "references" },
+    html("caption", { class: "unseen" }, "Scores of floor and ceiling"),
+    html("thead", {}, html("tr", {}, head("Score", "col"),
+      ...SPLITS.map((split) => head(words(split), "col", "number")))),
+    html("tbody", {}, row("floor", "promptless"), row("ceiling", "bayes")));
 }
 
 function drawTables() {
   const columns = columnsOf(byId("columns").value);
-  byId("references").textContent = referencesInWords();
   const tracks = Object.keys(TRACKS).filter((track) =>
     data.entries.some(({ submission }) => submission.track === track));
   byId("tables").replaceChildren(...tracks.map((track) => trackTable(track, columns)));
@@ -176,11 +186,11 @@ function drawTables() {
 
 function matches({ submission }, text) {
   const { name, authors, policy, hardware, training } = submission;
-  const said = [name, ...authors, policy.type, hardware, training].join("\n");
-  return said.toLowerCase().includes(text);
+  const description = [name, ...authors, policy.type, hardware, training].join("\n");
+  return description.toLowerCase().includes(text);
 }
 
-/** Hide what was not searched for, and tables and blocks of which nothing is left. */
+/** Hide the rows that do not match, and tables and blocks without a visible row. */
 function filterTables() {
   const text = byId("search").value.trim().toLowerCase();
   const track = byId("track").value;
@@ -200,7 +210,7 @@ function filterTables() {
   byId("found").textContent = `${found} of ${data.entries.length} entries`;
 }
 
-/** The best three of each track stand in the pictures first. */
+/** At first the charts show the best three of each track. */
 function tickBest() {
   const taken = {};
   data.entries.forEach(({ submission: { track } }, index) => {
@@ -223,6 +233,7 @@ function startTables() {
   byId("columns").addEventListener("change", drawTables);
   byId("track").addEventListener("change", filterTables);
   byId("search").addEventListener("input", filterTables);
+  byId("references").replaceChildren(referenceTable());
   tickBest();
   drawTables();
 }
