@@ -1,6 +1,6 @@
 """Scores submissions: every metric, from replays alone."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
@@ -14,7 +14,7 @@ from kitchen_prefs.datasets.manifest import published_fingerprint
 from kitchen_prefs.metrics import (
     Episode,
     Interval,
-    failure_modes,
+    count_failure_modes,
     mean_of_splits,
     mean_of_splits_all,
     score,
@@ -50,9 +50,9 @@ class Entry:
 
     @cached_property
     def failure_modes(self) -> dict[str, dict[str, int]]:
-        """For each test split, in how many episodes each thing went wrong."""
+        """For each test split, in how many episodes each failure mode occurred."""
         return {
-            split: _count(failure_modes(episode) for episode in episodes)
+            split: {mode: n for mode, (n, _) in count_failure_modes(episodes).items()}
             for split, episodes in self.episodes.items()
         }
 
@@ -145,11 +145,3 @@ def _replay(
         raise OSError(
             "A process that replays was killed; give fewer --jobs if memory is short."
         ) from error
-
-
-def _count(each: Iterable[dict[str, int]]) -> dict[str, int]:
-    counted: dict[str, int] = {}
-    for reasons in each:
-        for reason, times in reasons.items():
-            counted[reason] = counted.get(reason, 0) + (times > 0)
-    return counted

@@ -191,7 +191,7 @@ def test_a_damaged_header_is_named(tmp_path, content):
         EpisodeFile(tmp_path / "seen.jsonl", STANDARD)
 
 
-def test_in_the_experts_states_the_experts_load_is_no_merit(tmp_path):
+def test_on_expert_states_the_packing_is_not_measured(tmp_path):
     path = tmp_path / "seen.jsonl"
     file = EpisodeFile(path, replace(STANDARD, expert_states=True))
     (episode,) = roll_out(Lowest(), "seen", sessions=[0], expert_states=True, file=file)
