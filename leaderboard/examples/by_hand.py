@@ -1,4 +1,4 @@
-"""A submission from plain Python: it picks and places whatever it may, at random.
+"""A submission from plain Python: a policy that chooses among the choosable rows at random.
 
 python leaderboard/examples/by_hand.py outputs/by_hand
 """
@@ -18,7 +18,7 @@ folder.mkdir(parents=True)
 about = {
     "format": 1,
     "name": "By hand",
-    "authors": ["A. Person"],
+    "authors": ["A. Author"],
     "track": "standard",
     "policy": {"type": "by_hand"},
     "data_version": 1,

@@ -44,8 +44,8 @@ def played_at_random(split, index, seed, jitter=0.0):
 
 
 @pytest.fixture(scope="module")
-def played():
-    """Episodes that were played at random."""
+def rolled_out():
+    """Episodes of random decisions."""
     return {
         split: [played_at_random(split, i, seed=i) for i in range(SESSIONS)]
         for split in TEST_SPLITS
@@ -53,10 +53,10 @@ def played():
 
 
 @pytest.fixture(scope="module")
-def folder(played, make_entry, tmp_path_factory):
+def folder(rolled_out, make_entry, tmp_path_factory):
     """The submission of these episodes."""
     folder = tmp_path_factory.mktemp("random") / "submission"
-    write_submission(make_entry("a").submission, played, folder)
+    write_submission(make_entry("a").submission, rolled_out, folder)
     return folder
 
 
@@ -102,11 +102,12 @@ def test_two_scorings_print_the_same_bytes(folder, entry, by):
     assert printed(score_submissions([folder], 2)[0], by) == printed(entry, by)
 
 
-def test_a_replay_has_the_metrics_of_the_episodes_that_were_played(played, entry):
-    for split, episodes in played.items():
+def test_a_replay_has_the_metrics_of_the_rollouts(rolled_out, entry):
+    for split, episodes in rolled_out.items():
         assert entry.metrics[split] == {n: summarise(episodes, m) for n, m in ALL_METRICS.items()}
     assert entry.metrics["mean"] == {
-        name: mean_of_splits(list(played.values()), metric) for name, metric in ALL_METRICS.items()
+        name: mean_of_splits(list(rolled_out.values()), metric)
+        for name, metric in ALL_METRICS.items()
     }
 
 

@@ -21,10 +21,10 @@ ALL = range(6)  # all sessions of a split that was cut short
 def found(few_episodes):
     """What a re-run of an entry comes to, in which some sessions go badly."""
 
-    def judged(entry, rerun=(), fresh=()):
+    def compared(entry, rerun=(), fresh=()):
         return compare(entry, few_episodes(rerun), few_episodes(fresh, SALT), SALT)
 
-    return judged
+    return compared
 
 
 def test_the_same_policy_confirms(make_entry, found):
