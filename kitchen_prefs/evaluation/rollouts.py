@@ -53,10 +53,10 @@ def roll_out(
         prompts: How many demonstrations prompt an episode.
         expert_states: Carry out the expert's decisions and record what the policy would have
             chosen, see `metrics.category_accuracy`.
-        batch_size: How many sessions are rolled out at once. The
-            episodes of a deterministic policy do not depend on it. A policy that samples draws for
-            the whole batch at once: its episodes are reproduced only if all sessions are rolled
-            out with the same batch size, without an interruption.
+        batch_size: How many sessions are rolled out at once. The episodes of a deterministic
+            policy do not depend on it. A policy that samples draws for the whole batch at once: its
+            episodes are reproduced only if all sessions are rolled out with the same batch size,
+            without an interruption.
         file: Where each episode is written as it ends; the sessions in it are not rolled out again.
 
     Returns:

@@ -96,7 +96,7 @@ def _table(title: str, *heads: str) -> Table:
     first, *rest = heads
     table.add_column(first, no_wrap=True)
     for head in rest:
-        table.add_column(head, justify="right", min_width=9)  # "forbidden"
+        table.add_column(head, justify="right", min_width=9)  # fits "forbidden"
     return table
 
 

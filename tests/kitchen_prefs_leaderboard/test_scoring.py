@@ -149,7 +149,7 @@ def test_the_groups_means_weighted_back_are_the_splits(entry, by):
             assert of_split[labels[0]][name].mean == pytest.approx(np.mean(first))
 
 
-def test_a_strangers_name_is_printed_as_it_is(entry):
+def test_an_untrusted_name_is_printed_verbatim(entry):
     name = "[/red] [bold]me[/] :skull:"
     theirs = replace(entry, submission=entry.submission.model_copy(update={"name": name}))
     for text in printed(theirs, "count"):
