@@ -49,11 +49,11 @@ def to_comparison(found: Verification) -> Table:
 
 def to_verdict(found: Verification) -> str:
     """Whether a re-run confirms a submission, in a sentence."""
-    alike = f"{found.same:.0%} of the episodes have the same decisions"
+    same = f"{found.same:.0%} of the episodes have the same decisions"
     if found.confirmed:
-        return f"The re-run confirms the submission; {alike}."
+        return f"The re-run confirms the submission; {same}."
     where = "the same sessions" if not found.repeats else "fresh sessions"
-    return f"The re-run does NOT confirm the submission: on {where} its Score differs; {alike}."
+    return f"The re-run does NOT confirm the submission: on {where} its Score differs; {same}."
 
 
 def to_json(entries: Sequence[Entry], by: str | None) -> str:

@@ -82,7 +82,7 @@ def read_verifications(folder: Path) -> dict[str, Verification]:
             verification = Verification.model_validate_json(file.read_bytes())
         except ValidationError as error:
             raise ValueError(
-                f"{file} is no record of a re-run; delete it and verify anew."
+                f"{file} is no record of a re-run; delete it and verify again."
             ) from error
         if verification.confirmed:
             found[verification.digest] = verification
@@ -166,7 +166,7 @@ def compare(
     pairs = [(mine[e.split, e.session], e) for episodes in rerun.values() for e in episodes]
     gain = difference(rerun, entry.episodes)
     replayed = entry.metrics[MEAN]["Score"]
-    anew = mean_of_splits(list(fresh.values()), score)
+    on_fresh = mean_of_splits(list(fresh.values()), score)
     return Verification(
         digest=entry.digest,
         packages=installed_packages(),
@@ -174,10 +174,10 @@ def compare(
         same=sum(one.decisions == other.decisions for one, other in pairs) / len(pairs),
         replayed=_score_interval(replayed),
         rerun=_score_interval(mean_of_splits(list(rerun.values()), score)),
-        fresh=_score_interval(anew),
+        fresh=_score_interval(on_fresh),
         repeats=gain.low <= 0 <= gain.high,
-        generalises=replayed.mean - anew.mean
-        <= hypot(replayed.mean - replayed.low, anew.high - anew.mean),
+        generalises=replayed.mean - on_fresh.mean
+        <= hypot(replayed.mean - replayed.low, on_fresh.high - on_fresh.mean),
     )
 
 

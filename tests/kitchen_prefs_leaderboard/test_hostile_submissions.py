@@ -444,7 +444,9 @@ def is_killed(submission, split):
     os.kill(os.getpid(), signal.SIGKILL)
 
 
-def test_a_malformed_submission_is_refused_before_anything_is_replayed(folder, tmp_path, monkeypatch):
+def test_a_malformed_submission_is_refused_before_anything_is_replayed(
+    folder, tmp_path, monkeypatch
+):
     last = write(tmp_path / "last")
     (last / "noisy.jsonl.bz2").write_bytes(b"")
     monkeypatch.setattr(scoring, "replay_split", first_lies)
