@@ -52,12 +52,12 @@ def write_submission(
         folder: The submission's folder; an older submission there is replaced.
     """
     check_replaceable(folder)
-    with atomic_folder(folder) as beside:
+    with atomic_folder(folder) as unfinished:
         for split, episodes in tqdm(rolled_out.items(), "Writing", unit="split", leave=False):
             lines = to_jsonl([write_line(episode) for episode in episodes])
             # A fifth smaller than gzip, and without a time stamp: equal actions give equal bytes.
-            (beside / ACTIONS[split]).write_bytes(bz2.compress(lines))
-        (beside / DESCRIPTION).write_text(submission.model_dump_json(indent=2) + "\n")
+            (unfinished / ACTIONS[split]).write_bytes(bz2.compress(lines))
+        (unfinished / DESCRIPTION).write_text(submission.model_dump_json(indent=2) + "\n")
 
 
 def describe(**about: Any) -> Submission:

@@ -73,8 +73,8 @@ def write_pages(results: Results = Path("docs/results")) -> None:
     from kitchen_prefs_experiments.paper.results_page import pages
 
     for name, text in pages(results).items():
-        with atomic_file(results / f"{name}.md") as beside:
-            beside.write_text(text)
+        with atomic_file(results / f"{name}.md") as unfinished:
+            unfinished.write_text(text)
     for name, found in read_results(results).items():
         draw(TABLES[name], found, results / f"{name}.png")
     typer.echo(f"The pages are in {results}; index.md is the overview.")
@@ -95,6 +95,6 @@ def readme_table(
     from kitchen_prefs_experiments.paper.readme_table import replace_table
 
     text = replace_table(readme.read_text(), json.loads(scores.read_text()))
-    with atomic_file(readme) as beside:
-        beside.write_text(text)
+    with atomic_file(readme) as unfinished:
+        unfinished.write_text(text)
     typer.echo(f"The table is in {readme}.")

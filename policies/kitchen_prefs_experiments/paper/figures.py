@@ -38,8 +38,8 @@ def draw(table: Table | Curves, results: PolicyResults | CurveResults, file: Pat
     else:
         assert isinstance(results, PolicyResults)
         chart = _table(table, results)
-    with atomic_file(file) as beside:
-        chart.save(str(beside), scale_factor=2)
+    with atomic_file(file) as unfinished:
+        chart.save(str(unfinished), scale_factor=2)
 
 
 def _table(table: Table, results: PolicyResults) -> alt.LayerChart:

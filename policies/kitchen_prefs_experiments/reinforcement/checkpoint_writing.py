@@ -47,12 +47,14 @@ def save_checkpoint(run: Path, learner: PPO | MaskablePPO, policy: PreTrainedPol
     """Save a checkpoint atomically and link `last` to it."""
     interactions = learner.num_timesteps
     folder = get_step_checkpoint_dir(run, interactions, interactions)
-    with atomic_folder(folder) as beside:
-        policy.save_pretrained(pretrained_model(beside))
+    with atomic_folder(folder) as unfinished:
+        policy.save_pretrained(pretrained_model(unfinished))
         for processor in make_pre_post_processors(policy.config):
-            processor.save_pretrained(pretrained_model(beside))
-        save_training_state(beside, interactions, learner.policy.optimizer)
-        save_file(learner.policy.value_net.state_dict(), beside / TRAINING_STATE_DIR / VALUE_HEAD)
+            processor.save_pretrained(pretrained_model(unfinished))
+        save_training_state(unfinished, interactions, learner.policy.optimizer)
+        save_file(
+            learner.policy.value_net.state_dict(), unfinished / TRAINING_STATE_DIR / VALUE_HEAD
+        )
     update_last_checkpoint(folder)
 
 
