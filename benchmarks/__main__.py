@@ -1,4 +1,4 @@
-"""Speed, each figure beside a yardstick measured in the same run: `uv run python -m benchmarks`.
+"""Speed, relative to yardsticks measured in the same run: `uv run python -m benchmarks`.
 
 A machine's speed drifts and machines differ, so the ratio is what to compare.
 """
@@ -14,7 +14,7 @@ from benchmarks.training import training_steps
 
 
 def main(out: Path = Path("outputs/benchmarks.json")) -> None:
-    """Measure everything; takes about four minutes on two cores.
+    """Run all benchmarks; takes about four minutes on two cores.
 
     For example:
     uv run python -m benchmarks

@@ -19,7 +19,7 @@ from kitchen_prefs.envs.demonstrations import demonstrate
 from kitchen_prefs.simulation.sessions import make_session
 
 EPISODES = 70  # dishwasher-val-v1
-BY_LEROBOT = 10  # episodes that LeRobot's writer gets: it takes a second for ten
+BY_LEROBOT = 10  # episodes for LeRobot's writer, which takes a second for ten
 SAMPLES = 500
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from tqdm import tqdm
 
-ROUNDS = 5  # the median of five is steady against another process that wakes up once
+ROUNDS = 5  # the median of five is robust against one disturbance
 
 
 @dataclass(frozen=True)

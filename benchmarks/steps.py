@@ -1,4 +1,4 @@
-"""A recipe's training steps, as `lerobot-train` makes them, with a clock for each part."""
+"""A recipe's training steps, as `lerobot-train` makes them, with a timer for each part."""
 
 import time
 from collections import Counter
@@ -50,7 +50,7 @@ class Training:
         self._time_pairing()
 
     def run(self, steps: int) -> int:
-        """Make some steps and say how many."""
+        """Make some steps and return their number."""
         for _ in range(steps):
             self._step()
         return steps
@@ -63,13 +63,13 @@ class Training:
         return {part: 100 * seconds[part] / total for part in PARTS}
 
     def count(self, steps: int) -> tuple[float, float]:
-        """Count, in some steps that no clock sees.
+        """Count operations and padding, in some steps that are not timed.
 
         Args:
-            steps: How many.
+            steps: The number of steps.
 
         Returns:
-            The floating-point operations of the products of a step, those with padding included,
+            The floating-point operations of the matrix products in a step, padding included,
             and the share of padding among the rows of prompts and situations, in %.
         """
         masks = []  # of the tokens that enter encoder and decoder
@@ -78,7 +78,7 @@ class Training:
             layers[0].register_forward_pre_hook(lambda _, inputs: masks.append(inputs[0].mask))
             for layers in (network.encoder, network.decoder)
         ]
-        # The fused attention of a CPU is not counted, the one that is made of products is.
+        # Fused attention on a CPU is not counted; attention by matrix products is.
         with sdpa_kernel(SDPBackend.MATH), FlopCounterMode(display=False) as counter:
             self.run(steps)
         for hook in hooks:
@@ -88,37 +88,37 @@ class Training:
         return counter.get_total_flops() / steps, 100 * (1 - real / rows)
 
     def _step(self) -> None:
-        with self._clock("data"):
+        with self._timed("data"):
             batch = self._preprocess(next(self._batches))
-        with self._clock("forward"), torch.autocast("cpu", enabled=self.dtype == "bfloat16"):
+        with self._timed("forward"), torch.autocast("cpu", enabled=self.dtype == "bfloat16"):
             loss, _ = self._policy(batch)
-        with self._clock("backward"):
+        with self._timed("backward"):
             loss.backward()
-        with self._clock("optimiser"):
+        with self._timed("optimiser"):
             torch.nn.utils.clip_grad_norm_(self._policy.parameters(), self._clip)
             self._optimizer.step()
             self._optimizer.zero_grad()
 
     @contextmanager
-    def _clock(self, part: str) -> Iterator[None]:
+    def _timed(self, part: str) -> Iterator[None]:
         """Add the seconds that pass to a part."""
         start = time.perf_counter()
         yield
         self._seconds[part] += time.perf_counter() - start
 
     def _time_pairing(self) -> None:
-        """Pairing is inside the policy's forward; here it gets a clock of its own."""
+        """Pairing is part of the policy's forward; here it is timed separately."""
         pair = self._policy.pair
 
-        def timed(batch: dict[str, Tensor]) -> tuple:
-            with self._clock("pairing"):
+        def timed_pairing(batch: dict[str, Tensor]) -> tuple:
+            with self._timed("pairing"):
                 return pair(batch)
 
-        self._policy.pair = timed
+        self._policy.pair = timed_pairing
 
 
 def _settings(recipe: str) -> dict:
-    """A recipe's settings; one that goes on from another's checkpoint begins anew, as fast."""
+    """A recipe's settings; one that continues a checkpoint starts from random weights instead."""
     with recipe_file(recipe).open() as file:
         settings = draccus.cfgparsing.load_config(file)
     if checkpoint := settings["policy"].pop("path", None):  # outputs/<recipe>/checkpoints/...

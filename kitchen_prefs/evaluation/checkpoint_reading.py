@@ -46,7 +46,7 @@ READING_ERRORS = (
 
 
 def find_checkpoint(path: str) -> Path:
-    """The folder of a checkpoint, which is fetched if `path` is a name on the Hugging Face hub.
+    """Find a checkpoint's folder; it is downloaded if `path` names one on the Hugging Face hub.
 
     Raises:
         ValueError: If there is no checkpoint, or if it lacks a file.
@@ -69,7 +69,7 @@ def find_checkpoint(path: str) -> Path:
 
 
 def read_config(folder: Path, options: Sequence[str]) -> PreTrainedConfig:
-    """The settings of a checkpoint's policy, with some of them overridden.
+    """Read the settings of a checkpoint's policy, with some of them overridden.
 
     Raises:
         ValueError: If the file is damaged, or the policy is of an unknown type or has no such
@@ -98,10 +98,10 @@ def setting_names(config_class: type[PreTrainedConfig]) -> list[str]:
 
 
 def read_policy(folder: Path, config: PreTrainedConfig) -> PreTrainedPolicy:
-    """The policy of a checkpoint; unlike with LeRobot's factory no weight may be missing.
+    """Load the policy of a checkpoint; unlike in LeRobot's factory, no weight may be missing.
 
     Raises:
-        ValueError: If the weights are damaged or are not those of the policy.
+        ValueError: If the weights are damaged or do not fit the policy.
     """
     try:
         return get_policy_class(config.type).from_pretrained(folder, config=config, strict=True)
@@ -116,7 +116,7 @@ def read_policy(folder: Path, config: PreTrainedConfig) -> PreTrainedPolicy:
 def read_processors(
     folder: Path, config: PreTrainedConfig
 ) -> tuple[PolicyProcessorPipeline, PolicyProcessorPipeline]:
-    """The pipelines to the policy's inputs and from its outputs.
+    """Load the pipelines that process the policy's inputs and its outputs.
 
     Raises:
         ValueError: If one of their files is damaged, or has a step that is not LeRobot's or a
@@ -132,7 +132,7 @@ def read_processors(
 
 
 def _registered_steps(file: Path) -> list[str]:
-    """The names of a processor's steps. All are registered: LeRobot would import and call others.
+    """The names of a processor's steps; unregistered ones are refused, as LeRobot would run them.
 
     Raises:
         ValueError: If the file is damaged, or a step is not registered.

@@ -1,4 +1,4 @@
-"""Which checkpoint of a training run is the best: the one with the highest Score on val."""
+"""Selects the best checkpoint of a training run: the one with the highest Score on val."""
 
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -12,10 +12,10 @@ from kitchen_prefs.utils.files import write_json
 
 @dataclass(frozen=True)
 class Selection:
-    """The checkpoints of a run, compared.
+    """The evaluated checkpoints of a run.
 
     Attributes:
-        best: The folder of the best checkpoint; of equal ones the earliest.
+        best: The folder of the best checkpoint; on a tie, the earliest.
         metrics: Each checkpoint's metrics on val, by its step.
     """
 
@@ -28,7 +28,7 @@ def select_checkpoint(
 ) -> Selection:
     """Evaluate a run's checkpoints on val and write RUN/selection.json.
 
-    The episodes are kept in RUN/selection, so that a selection that was killed goes on.
+    The episodes are kept in RUN/selection, so a selection that was killed resumes.
 
     Args:
         run: The output folder of `lerobot-train` or `kitchen-prefs reinforce`.

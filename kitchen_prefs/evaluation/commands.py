@@ -42,7 +42,7 @@ BatchSize = Annotated[int, typer.Option(help="How many sessions are rolled out a
 def evaluate(
     context: typer.Context,
     split: Annotated[list[str], typer.Option(help="A split; several, or a list with commas.")],
-    out: Annotated[Path, typer.Option(help="The folder that keeps the episodes.")],
+    out: Annotated[Path, typer.Option(help="The folder of the episodes.")],
     path: PolicyPath = None,
     policy_type: PolicyType = None,
     track: Track = None,
@@ -58,12 +58,12 @@ def evaluate(
         bool, typer.Option("--prompt-use", help="Also roll out with another preference's prompt.")
     ] = False,
     category_accuracy: Annotated[
-        bool, typer.Option("--category-accuracy", help="Also choose in each state of the expert.")
+        bool, typer.Option("--category-accuracy", help="Also evaluate on the expert's states.")
     ] = False,
 ) -> None:
-    """Roll a policy out on splits and print its metrics and why episodes fell short.
+    """Roll a policy out on splits and print its metrics and failure modes.
 
-    OUT keeps one line an episode, so a command that was killed goes on.
+    OUT holds one line per episode, so a command that was killed resumes.
     Any other --policy.SETTING=VALUE overrides a setting of the policy.
 
     For example:
@@ -102,7 +102,7 @@ def select(
 ) -> None:
     """Evaluate a run's saved checkpoints on val and name the one with the best Score.
 
-    Writes RUN/selection.json; a command that was killed goes on.
+    Writes RUN/selection.json; a command that was killed resumes.
 
     For example:
     kitchen-prefs select outputs/ttp_quick
@@ -153,7 +153,7 @@ def _print_overview(summaries: Sequence["Summary"], mean: dict[str, Interval]) -
 def _add_intervals(
     table: Table, name: str, metrics: dict[str, Interval], names: Iterable[str]
 ) -> None:
-    """Three rows, as all intervals side by side would be wider than a terminal."""
+    """Add three rows: intervals side by side would be wider than a terminal."""
     intervals = [metrics.get(metric) for metric in names]
     for head, end in ((name, "mean"), ("  95 % from", "low"), ("         to", "high")):
         table.add_row(head, *(f"{getattr(i, end):.3f}" if i else "-" for i in intervals))

@@ -1,8 +1,8 @@
-"""The file of an evaluation: one JSON line an episode, appended as soon as the episode ends.
+"""The file of an evaluation: one JSON line per episode, appended as soon as the episode ends.
 
-A file holds episodes of one split under one set of conditions, which stand in a header beside it.
-It outlives a kill: a torn last line is dropped, and the sessions that are there are not rolled
-out again.
+A file holds episodes of one split under one set of conditions, which a header file beside it
+holds. An evaluation that was killed resumes: an incomplete last line is dropped, and finished
+sessions are not rolled out again.
 """
 
 import json
@@ -20,9 +20,9 @@ class EvaluationConditions:
 
     Attributes:
         policy: The policy's type.
-        fingerprint: A hash of its weights and of the settings that change what it does.
+        fingerprint: A hash of its weights and of the settings that change its behaviour.
         track: The track: "standard", "privileged" or "language".
-        prompt_of: Whose demonstration the prompt is: of the "same" or of an "other" preference.
+        prompt_of: The preference that the prompt demonstrates: the "same" or an "other" one.
         prompts: How many demonstrations prompt an episode.
         expert_states: Whether the decisions were taken in the expert's states.
         salt: The session seed; 0 is the published one.
@@ -45,11 +45,11 @@ class EpisodeFile:
     """The episodes of one split under one set of conditions, on disk.
 
     Args:
-        path: A .jsonl file, made with its folder if it is not there.
-        conditions: The conditions of the episodes to come.
+        path: A .jsonl file; it and its folder are created if missing.
+        conditions: The conditions of the episodes that are appended.
 
     Attributes:
-        episodes: The episodes so far, in the order in which they ended.
+        episodes: The episodes in the file, in the order in which they ended.
 
     Raises:
         ValueError: If the file holds episodes under other or unknown conditions, or cannot be read.
@@ -60,7 +60,7 @@ class EpisodeFile:
         self.conditions = conditions
         path.parent.mkdir(parents=True, exist_ok=True)
         _check_conditions(path, conditions)
-        _drop_torn_line(path)
+        _drop_incomplete_line(path)
         self.episodes = read_episodes(path)
 
     def append(self, episode: Episode) -> None:
@@ -118,7 +118,7 @@ def read_header(header: Path, way_out: str) -> dict:
 
     Args:
         header: The file beside it.
-        way_out: Ends the error's sentence.
+        way_out: The end of the error message: what the user can do.
 
     Raises:
         ValueError: If it is no header.
@@ -132,7 +132,7 @@ def read_header(header: Path, way_out: str) -> dict:
     return content
 
 
-def _drop_torn_line(path: Path) -> None:
+def _drop_incomplete_line(path: Path) -> None:
     path.touch()
     content = path.read_bytes()
     if not content.endswith(b"\n"):
@@ -150,5 +150,5 @@ def _parse(line: str, where: str) -> Episode:
 
 
 def _tuples(value: Any) -> Any:
-    """JSON knows lists alone; the facts of an episode are tuples."""
+    """Turn lists, as JSON has them, into the tuples of an `Episode`."""
     return tuple(map(_tuples, value)) if isinstance(value, list) else value

@@ -13,7 +13,7 @@ from kitchen_prefs.metrics import (
     Episode,
     Interval,
     category_accuracy,
-    failure_modes,
+    count_failure_modes,
     mean_of_splits_all,
     prompt_use,
     summarise,
@@ -42,13 +42,13 @@ class Summary:
 
 @dataclass(frozen=True)
 class Evaluator:
-    """A policy and the folder that keeps its episodes.
+    """A policy and the folder of its episodes.
 
-    An evaluation that was killed goes on where it stopped when it is asked for again.
+    An evaluation that was killed resumes: episodes that are in the folder are not rolled out again.
 
     Attributes:
         loaded_policy: The policy.
-        folder: Holds <split>.jsonl, one line an episode, and <split>.json, the summary.
+        folder: Holds <split>.jsonl, one line per episode, and <split>.json, the summary.
         salt: The session seed; 0 is the published one.
         prompts: How many demonstrations prompt an episode.
         batch_size: How many sessions are rolled out at once.
@@ -68,20 +68,20 @@ class Evaluator:
         Args:
             split: The split's name.
             with_prompt_use: Roll out each session with another preference's prompt, too.
-            with_category_accuracy: Ask for the policy's choices in the expert's states, too.
+            with_category_accuracy: Evaluate the policy's choices on the expert's states, too.
 
         Raises:
-            ValueError: If the folder holds episodes of another policy, track, salt, number of
-                prompts or version.
+            ValueError: If the folder holds episodes of another policy, track, session seed (salt),
+                number of prompts or version.
         """
         episodes = self.episodes(split)
         metrics = summarise_all(episodes)
         if with_prompt_use:
             metrics["Prompt use"] = prompt_use(episodes, self.episodes(split, prompt_of="other"))
         if with_category_accuracy:
-            beside_expert = self.episodes(split, expert_states=True)
-            metrics["Category accuracy"] = summarise(beside_expert, category_accuracy)
-        summary = Summary(split, len(episodes), metrics, _count_failure_modes(episodes))
+            on_expert_states = self.episodes(split, expert_states=True)
+            metrics["Category accuracy"] = summarise(on_expert_states, category_accuracy)
+        summary = Summary(split, len(episodes), metrics, count_failure_modes(episodes))
         conditions = self._conditions("same", expert_states=False)
         write_json(
             self.folder / f"{split}.json", {**asdict(summary), "conditions": asdict(conditions)}
@@ -127,9 +127,3 @@ class Evaluator:
             data_version=DATA_VERSION,
             package_version=version("lerobot_policy_kitchen_prefs"),
         )
-
-
-def _count_failure_modes(episodes: Sequence[Episode]) -> dict[str, tuple[int, int]]:
-    each = [failure_modes(episode) for episode in episodes]
-    times = {reason: [one[reason] for one in each] for reason in each[0]}
-    return {reason: (sum(n > 0 for n in counts), sum(counts)) for reason, counts in times.items()}

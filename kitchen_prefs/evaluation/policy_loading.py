@@ -28,7 +28,7 @@ from kitchen_prefs.evaluation.checkpoint_reading import (
 )
 from kitchen_prefs.utils.suggestions import check_settings, suggest
 
-# Where a policy runs and where it is kept say nothing about what it does.
+# Settings that do not change what a policy does: where it runs and where it is stored.
 NOT_BEHAVIOUR = (
     "device",
     "license",
@@ -49,7 +49,7 @@ class LoadedPolicy:
         policy: The policy.
         preprocessor: Its pipeline from observations to inputs.
         postprocessor: Its pipeline from outputs to actions.
-        track: What the environment tells it.
+        track: The track whose observations it receives.
     """
 
     policy: PreTrainedPolicy
@@ -58,21 +58,21 @@ class LoadedPolicy:
     track: str
 
     def reset(self) -> None:
-        """Forget everything: a new batch of episodes begins."""
+        """Clear the policy's state: a new batch of episodes begins."""
         self.policy.reset()
 
     def act(self, observations: Sequence[dict[str, np.ndarray]], tasks: list[str]) -> np.ndarray:
-        """Decide for B episodes at once.
+        """Choose actions for B episodes at once.
 
         Args:
-            observations: What each environment shows.
-            tasks: What each environment says to do.
+            observations: The observation of each environment.
+            tasks: The task description of each environment.
 
         Returns:
             The actions, (B, 7) float32.
         """
         names = observations[0].keys()
-        stacked = {name: np.stack([seen[name] for seen in observations]) for name in names}
+        stacked = {name: np.stack([one[name] for one in observations]) for name in names}
         batch: dict[str, Any] = preprocess_observation(stacked)
         batch["task"] = tasks
         with torch.inference_mode():
@@ -81,7 +81,7 @@ class LoadedPolicy:
 
     @property
     def fingerprint(self) -> str:
-        """A hash of all weights and settings, the processors' too, that change what it does."""
+        """A hash of all weights and settings that change its behaviour, the processors' too."""
         sha = hashlib.sha256()
         settings = draccus.encode(self.policy.config, PreTrainedConfig)
         _add(sha, settings, self.policy.state_dict())
@@ -114,14 +114,14 @@ def load_policy(
         path: A checkpoint's folder `pretrained_model`, or its name on the Hugging Face hub.
         policy_type: The type of a policy that needs no training, such as "rules".
         options: Settings of the policy to override, as in `--rule=expert`.
-        track: What the environment tells the policy; if not given, the track that the policy's
-            settings ask for, or else the standard one.
+        track: The track of the environment; if not given, the track that the policy's settings
+            ask for, or else the standard one.
 
     Returns:
         The policy, ready to act.
 
     Raises:
-        ValueError: If not just one of `path` and `policy_type` is given, or if the policy is
+        ValueError: If not exactly one of `path` and `policy_type` is given, or if the policy is
             unknown, damaged or not trained, has no such setting, or does not fit the environment.
     """
     register_third_party_plugins()
@@ -168,17 +168,17 @@ def _environment(config: PreTrainedConfig, track: str | None) -> KitchenPrefsEnv
 
 
 def _check_features(config: PreTrainedConfig, environment: KitchenPrefsEnv) -> None:
-    """Compare what a checkpoint was trained on with what the environment shows."""
-    shown = env_to_policy_features(environment)
+    """Check that the observation contains the features that a checkpoint was trained on."""
+    observed = env_to_policy_features(environment)
     trained_on = {**(config.input_features or {}), **(config.output_features or {})}
     for name, feature in trained_on.items():
-        if name not in shown:
+        if name not in observed:
             raise ValueError(
                 f"The policy was trained on {name!r}, which the environment does not show on the "
                 f"{environment.track} track."
             )
-        if tuple(feature.shape) != tuple(shown[name].shape):
+        if tuple(feature.shape) != tuple(observed[name].shape):
             raise ValueError(
                 f"The policy was trained on {name!r} of shape {tuple(feature.shape)}; the "
-                f"environment's has {tuple(shown[name].shape)}. Train it on this data version."
+                f"environment's has {tuple(observed[name].shape)}. Train it on this data version."
             )

@@ -1,7 +1,7 @@
-"""The options that name a policy, as `evaluate`, `leaderboard submit` and `verify` have them.
+"""The options that name a policy, shared by `evaluate`, `leaderboard submit` and `verify`.
 
-They stand apart from `policy_loading`, which takes seconds to import torch and LeRobot: `--help`
-stays quick.
+They are separate from `policy_loading`, which takes seconds to import torch and LeRobot, so that
+`--help` stays quick.
 """
 
 from collections.abc import Sequence
@@ -15,7 +15,7 @@ PolicyPath = Annotated[
 PolicyType = Annotated[
     str | None, typer.Option("--policy.type", help="A policy that needs no training.")
 ]
-# Lets a command take options that are not declared: the policy's settings.
+# Lets a command accept undeclared options: the policy's settings.
 ANY_SETTING = {"allow_extra_args": True, "ignore_unknown_options": True}
 
 

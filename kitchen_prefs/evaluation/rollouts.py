@@ -1,4 +1,4 @@
-"""Rolls a policy out on a split: every session once, a batch of environments in lockstep."""
+"""Rolls a policy out on a split: every session once, in batches of environments."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
@@ -15,21 +15,21 @@ from kitchen_prefs.metrics import Episode
 from kitchen_prefs.simulation.kitchen import decision_kind
 from kitchen_prefs.splits import get_split
 
-BATCH_SIZE = 16  # decisions of one forward pass; more gains little on a CPU
+BATCH_SIZE = 16  # environments in one forward pass; more gains little on a CPU
 
 
 class Policy(Protocol):
-    """What decides for B episodes at once; `policy_loading.LoadedPolicy` is one."""
+    """A policy that acts in B environments at once; `policy_loading.LoadedPolicy` is one."""
 
     def reset(self) -> None:
-        """Forget everything: a new batch of episodes begins."""
+        """Clear the policy's state: a new batch of episodes begins."""
 
     def act(self, observations: Sequence[dict[str, np.ndarray]], tasks: list[str]) -> np.ndarray:
         """The actions for the observations and tasks of B environments, (B, 7)."""
 
 
 def roll_out(
-    decider: Policy,
+    policy: Policy,
     split: str,
     *,
     sessions: Iterable[int] | None = None,
@@ -44,27 +44,27 @@ def roll_out(
     """Roll a policy out on sessions of a split.
 
     Args:
-        decider: The policy.
+        policy: The policy.
         split: The split's name.
         sessions: Which sessions, all if not given.
         salt: The session seed; 0 is the published one.
         track: The track of the environment.
         prompt_of: "same", or "other" for a prompt of another preference.
         prompts: How many demonstrations prompt an episode.
-        expert_states: Carry out the expert's decisions and note what the policy would have chosen,
-            see `metrics.category_accuracy`.
-        batch_size: How many sessions are rolled out at once. What a deterministic policy does in a
-            session does not depend on it. A policy that samples draws for the whole batch at once:
-            its episodes are the same only when all sessions are rolled out again with the same
-            batch size, and without a kill in between.
+        expert_states: Carry out the expert's decisions and record what the policy would have
+            chosen, see `metrics.category_accuracy`.
+        batch_size: How many sessions are rolled out at once. The episodes of a deterministic
+            policy do not depend on it. A policy that samples draws for the whole batch at once: its
+            episodes are reproduced only if all sessions are rolled out with the same batch size,
+            without an interruption.
         file: Where each episode is written as it ends; the sessions in it are not rolled out again.
 
     Returns:
-        The episodes, one a session, in the sessions' order.
+        One episode per session, in the order of the sessions.
 
     Raises:
         ValueError: If the split, a session, the track or `prompt_of` does not exist, or if there
-            are not so many prompts.
+            are fewer prompts than asked for.
     """
     wanted = list(range(get_split(split).sessions) if sessions is None else sessions)
     episodes = {e.session: e for e in file.episodes} if file else {}
@@ -81,9 +81,9 @@ def roll_out(
         torch.random.fork_rng(),
     ):
         for batch in batched(missing, batch_size):
-            torch.manual_seed(batch[0])  # so that a policy that samples can be repeated, see above
+            torch.manual_seed(batch[0])  # makes a policy that samples reproducible, see above
             for episode in _roll_out_batch(
-                decider, environments[: len(batch)], batch, salt, expert_states
+                policy, environments[: len(batch)], batch, salt, expert_states
             ):
                 episodes[episode.session] = episode
                 if file:
@@ -93,18 +93,18 @@ def roll_out(
 
 
 def _roll_out_batch(
-    decider: Policy,
+    policy: Policy,
     environments: Sequence[DishwasherLoading],
     sessions: Sequence[int],
     salt: int,
     expert_states: bool,
 ) -> Iterator[Episode]:
-    """Roll out one session in each environment, and give each episode as soon as it ends.
+    """Roll out one session in each environment and yield each episode as soon as it ends.
 
-    The batch keeps its size to the end, as policies keep a memory for each of its rows; what they
-    decide for an episode that has ended is dropped.
+    The batch keeps its size to the end, because policies keep a state per environment; actions for
+    an episode that has ended are ignored.
     """
-    decider.reset()
+    policy.reset()
     options = [{"session": session, "salt": salt} for session in sessions]
     pairs = zip(environments, options, strict=True)
     observations = [environment.reset(options=option)[0] for environment, option in pairs]
@@ -112,7 +112,7 @@ def _roll_out_batch(
     chosen: list[list[int]] = [[] for _ in environments]
     running = list(range(len(environments)))
     while running:
-        actions = decider.act(observations, tasks)  # (B, 7)
+        actions = policy.act(observations, tasks)  # (B, 7)
         for i in tuple(running):
             environment, action = environments[i], actions[i]
             if expert_states:
@@ -122,13 +122,13 @@ def _roll_out_batch(
             if terminated or truncated:
                 running.remove(i)
                 yield (
-                    _beside_expert(environment, chosen[i])
+                    _on_expert_states(environment, chosen[i])
                     if expert_states
                     else environment.episode()
                 )
 
 
-def _beside_expert(environment: DishwasherLoading, chosen: list[int]) -> Episode:
+def _on_expert_states(environment: DishwasherLoading, chosen: list[int]) -> Episode:
     """The expert's episode, with what the policy would have chosen as its decisions."""
     episode = environment.episode()
     return replace(

@@ -16,18 +16,18 @@ class Episode:
         decisions: The instances that the policy chose: 0 the door, 1 the bottom rack, 2 the top
             rack, 3 + i dish i, 999 the sink, 1000 + k placement k of the bottom rack, 2000 + k of
             the top rack.
-        kinds: What each of `decisions` is: "door", "bottom rack", "top rack", the category of a
+        kinds: The kind of each of `decisions`: "door", "bottom rack", "top rack", the category of a
             dish, "in bottom", "in top" or "in sink".
         expert_decisions: The expert's decisions.
-        expert_kinds: What each of `expert_decisions` is.
+        expert_kinds: The kind of each of `expert_decisions`.
         placed: The dishes in the rack that the preference gives their category: (â, b̂).
         expert_placed: The same for the expert: (a, b).
-        wrong_rack: The dishes that stand in the other rack.
+        wrong_rack: The dishes in the other rack.
         sunk: The dishes dropped in the sink.
         expert_sunk: The dishes that the expert dropped in the sink.
         refused: For each of `decisions`, whether the kitchen could not carry it out.
-        blocked_places: How often a dish was to go where another one stands in its way.
-        longest_loop: The length of the longest run of one and the same refused choice.
+        blocked_places: How often a placement was chosen that another dish blocks.
+        longest_loop: The most repetitions of one refused decision in a row.
         turns: How often a dish of the lowest rank was picked, and at how many decisions dishes of
             several ranks waited; see `scores.turn_accuracy`.
         closed_early: How often the door was closed with dishes on the counter or still to come.
@@ -68,4 +68,4 @@ class Episode:
             raise ValueError(f"The expert decides nothing in {where}; there is nothing to compare.")
         of_policy = {len(self.decisions), len(self.kinds), len(self.refused), len(self.actions)}
         if len(of_policy) > 1 or len(self.expert_decisions) != len(self.expert_kinds):
-            raise ValueError(f"The decisions of {where} and what is said of them differ in length.")
+            raise ValueError(f"The decisions of {where} and the facts about them differ in length.")

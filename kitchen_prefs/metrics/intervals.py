@@ -9,7 +9,7 @@ import numpy as np
 from kitchen_prefs.metrics.episode import Episode
 from kitchen_prefs.metrics.scores import ALL_METRICS, Metric, packing_efficiency
 
-DIGITS = 4  # the bootstrap tells no more than three; a fourth keeps rounding out of them
+DIGITS = 4  # three are significant, given the bootstrap; a fourth avoids rounding errors in them
 
 
 @dataclass(frozen=True)
@@ -34,7 +34,7 @@ class Interval:
 
 
 def summarise(episodes: Sequence[Episode], metric: Metric) -> Interval:
-    """The mean of a metric over those episodes of one split that have a value of it.
+    """The mean of a metric over the episodes of one split that have a value of it.
 
     Raises:
         ValueError: If no episode has one.
@@ -128,9 +128,9 @@ def _resample(
 ) -> np.ndarray:
     """Resample sessions within preferences; where preferences are a sample, resample those.
 
-    The twelve preferences are fixed, so an interval says what other sessions of them would give.
-    Those of many_preferences stand for all that there are. A preference with a single session
-    cannot be resampled within, so then the preferences are resampled, too.
+    The twelve preferences are fixed, so an interval covers other sessions of the same preferences.
+    Those of many_preferences are a sample of all preferences. A preference with a single session
+    cannot be resampled within, so then the preferences are resampled instead.
 
     Returns:
         The means of the resampled values, (RESAMPLES,).

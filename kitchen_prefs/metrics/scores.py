@@ -1,13 +1,14 @@
-"""The paper's metrics, this benchmark's Score, and the metrics that say what the Score leaves open.
+"""The paper's metrics, this benchmark's Score, and further metrics that explain it.
 
 Every metric is a function of one `Episode`; the rescaled Score also reads the committed Scores of
-floor and ceiling (reference_scores.json). In the formulas, a dishes stand in the top rack at the
-end of the expert's episode and b in the bottom, â and b̂ at the end of the policy's; l and p are the
+floor and ceiling (reference_scores.json). In the formulas, a and b are the numbers of correctly
+placed dishes in the top and bottom rack at the end of the expert's episode, â and b̂ at the end of
+the policy's; l and p are the
 expert's and the policy's numbers of decisions.
 """
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from functools import cache
 from importlib.resources import files
 
@@ -101,7 +102,7 @@ def refused_decisions(episode: Episode) -> int:
 
 
 def category_edit_similarity_without_refused(episode: Episode) -> float:
-    """ED_c of the decisions that the kitchen carried out: the order without geometry's errors."""
+    """ED_c of the decisions that the kitchen carried out: the order without errors of geometry."""
     pairs = zip(episode.kinds, episode.refused, strict=True)
     carried_out = tuple(kind for kind, was_refused in pairs if not was_refused)
     return _similarity(carried_out, episode.expert_kinds)
@@ -129,10 +130,10 @@ def rescaled_score(episode: Episode) -> float | None:
     return (score(episode) - floor) / (ceiling - floor)
 
 
-# None says that an episode has no such value; means leave it out.
+# None means that an episode has no value; it is left out of means.
 Metric = Callable[[Episode], float | None]
 
-# The six that every table shows.
+# The six metrics that every table shows.
 METRICS: dict[str, Metric] = {
     "Score": score,
     "PE": packing_efficiency,
@@ -141,7 +142,7 @@ METRICS: dict[str, Metric] = {
     "TE": temporal_efficiency,
     "Success": success,
 }
-# Those that stand in files, on the page and in tables of their own.
+# Shown in files, on the leaderboard's page and in separate tables.
 FURTHER_METRICS: dict[str, Metric] = {
     "Rescaled": rescaled_score,
     "Turn": turn_accuracy,
@@ -150,12 +151,12 @@ FURTHER_METRICS: dict[str, Metric] = {
 }
 ALL_METRICS = METRICS | FURTHER_METRICS
 
-# A failed grasp may be tried again, as the noisy split invites to; the third time it is a loop.
+# A failed grasp may be retried, as the noisy split requires; the third time in a row is a loop.
 LOOP = 3
 
 
 def failure_modes(episode: Episode) -> dict[str, int]:
-    """Why an episode fell short, each with how often it happened; all 0 if nothing went wrong."""
+    """How often each failure mode occurred in an episode; all 0 if nothing went wrong."""
     return {
         "wrong rack": episode.wrong_rack,
         "sunk without need": max(episode.sunk - episode.expert_sunk, 0),
@@ -164,3 +165,12 @@ def failure_modes(episode: Episode) -> dict[str, int]:
         "blocked place": episode.blocked_places,
         "ran out of decisions": int(not episode.finished),
     }
+
+
+def count_failure_modes(episodes: Iterable[Episode]) -> dict[str, tuple[int, int]]:
+    """For each failure mode, in how many episodes it occurred and how often in all."""
+    times: dict[str, list[int]] = {}
+    for episode in episodes:
+        for mode, count in failure_modes(episode).items():
+            times.setdefault(mode, []).append(count)
+    return {mode: (sum(n > 0 for n in counts), sum(counts)) for mode, counts in times.items()}

@@ -119,6 +119,6 @@ def count(placements: Placements) -> dict[str, int]:
 def save_placements(placements: Placements, record: dict[str, Any]) -> None:
     """Write the placements and their record where `load_placements` finds them."""
     arrays = {name: getattr(placements, name) for name in Placements.__dataclass_fields__}
-    with atomic_file(PLACEMENTS_FILE) as beside:
-        np.savez_compressed(beside, **arrays)
+    with atomic_file(PLACEMENTS_FILE) as unfinished:
+        np.savez_compressed(unfinished, **arrays)
     write_json(RECORD_FILE, record)

@@ -18,12 +18,12 @@ def atomic_file(path: Path) -> Iterator[Path]:
     Yields:
         The path to write to, with the same suffix.
     """
-    beside = path.with_name(f".unfinished-{path.name}")
+    unfinished = path.with_name(f".unfinished-{path.name}")
     try:
-        yield beside
-        beside.replace(path)
+        yield unfinished
+        unfinished.replace(path)
     finally:
-        beside.unlink(missing_ok=True)
+        unfinished.unlink(missing_ok=True)
 
 
 @contextmanager
@@ -36,23 +36,24 @@ def atomic_folder(path: Path) -> Iterator[Path]:
     Yields:
         The folder to write to, which is empty.
     """
-    beside, before = (path.with_name(f".{state}-{path.name}") for state in ("unfinished", "before"))
-    rmtree(beside, ignore_errors=True)  # of a process that was killed
-    beside.mkdir(parents=True)
+    unfinished = path.with_name(f".unfinished-{path.name}")
+    before = path.with_name(f".before-{path.name}")
+    rmtree(unfinished, ignore_errors=True)  # of a process that was killed
+    unfinished.mkdir(parents=True)
     try:
-        yield beside
+        yield unfinished
         if path.exists():
             path.replace(before)
-        beside.replace(path)
+        unfinished.replace(path)
     finally:
-        rmtree(beside, ignore_errors=True)
+        rmtree(unfinished, ignore_errors=True)
         rmtree(before, ignore_errors=True)
 
 
 def write_json(path: Path, content: dict) -> None:
     """Write a JSON file so that it is either whole or not there."""
-    with atomic_file(path) as beside:
-        beside.write_text(json.dumps(content, indent=2) + "\n")
+    with atomic_file(path) as unfinished:
+        unfinished.write_text(json.dumps(content, indent=2) + "\n")
 
 
 def make_folder(path: Path, option: str) -> None:

@@ -1,4 +1,4 @@
-"""A submission from plain Python: it picks and places whatever it may, at random.
+"""A submission from plain Python: a policy that chooses among the choosable rows at random.
 
 python leaderboard/examples/by_hand.py outputs/by_hand
 """

@@ -13,16 +13,16 @@ from rich.console import Console
 
 from kitchen_prefs.evaluation.policy_options import ANY_SETTING, PolicyPath, PolicyType
 from kitchen_prefs.utils.files import make_folder
-from kitchen_prefs_leaderboard.submission_format import NOT_SAID
+from kitchen_prefs_leaderboard.submission_format import UNSPECIFIED
 
 app = typer.Typer(
     name="leaderboard",
-    help="Submissions that carry no score: make one, score it, verify it, show it, push it.",
+    help="Submissions without scores: make one, score it, verify it, show it, push it.",
     no_args_is_help=True,
 )
 console = Console()
 
-Jobs = Annotated[int, typer.Option(help="How many processes, a core for each.", min=1)]
+Jobs = Annotated[int, typer.Option(help="The number of processes, one per core.", min=1)]
 CORES = os.cpu_count() or 1
 Verifications = Annotated[Path, typer.Option(help="The records of re-runs.")]
 KEPT = Path("leaderboard/verifications")
@@ -46,23 +46,25 @@ class Groups(StrEnum):
 @app.command(context_settings=ANY_SETTING)
 def submit(
     context: typer.Context,
-    name: Annotated[str, typer.Option(help="What the row is called.")],
+    name: Annotated[str, typer.Option(help="The name of the entry.")],
     track: Annotated[str, typer.Option(help="standard, privileged, language or open.")],
     out: Annotated[Path, typer.Option(help="The submission's folder.")],
     path: PolicyPath = None,
     policy_type: PolicyType = None,
     author: Annotated[list[str], typer.Option(help="Who submits; several.")] = ["anonymous"],  # noqa: B006
     link: Annotated[str | None, typer.Option(help="Where to read more.")] = None,
-    hardware: Annotated[str, typer.Option(help="What it was trained on.")] = NOT_SAID,
+    hardware: Annotated[str, typer.Option(help="The hardware of the training.")] = UNSPECIFIED,
     training: Annotated[
         str | None,
-        typer.Option(help="On what, how long.", show_default="what train_config.json says"),
+        typer.Option(
+            help="The data and the number of steps.", show_default="from train_config.json"
+        ),
     ] = None,
     jobs: Jobs = CORES,
 ) -> None:
     """Roll a policy out on the test splits and write its actions as a submission.
 
-    The episodes are kept in OUT-episodes, so a command that was killed goes on.
+    The episodes are kept in OUT-episodes, so a command that was killed resumes.
     Any other --policy.SETTING=VALUE overrides a setting of the policy.
 
     For example:
@@ -82,7 +84,7 @@ def submit(
         track=track,
         policy=submission_writing.policy_of(policy.loaded_policy),
         hardware=hardware,
-        training=training or (submission_writing.training_of(path) if path else NOT_SAID),
+        training=training or (submission_writing.training_of(path) if path else UNSPECIFIED),
     )
     episodes = policy.roll_out(out.with_name(f"{out.name}-episodes"), salt=0, jobs=jobs)
     submission_writing.write_submission(submission, episodes, out)
@@ -126,10 +128,10 @@ def verify(
         typer.Option(help="The seed of the fresh sessions.", min=1, show_default="at random"),
     ] = None,
     verifications: Verifications = KEPT,
-    out: Annotated[Path, typer.Option(help="Keeps the episodes.")] = Path("outputs/verify"),
+    out: Annotated[Path, typer.Option(help="The folder of the episodes.")] = Path("outputs/verify"),
     jobs: Jobs = CORES,
 ) -> None:
-    """Check where a submission's actions lead, and with --rerun which policy chose them.
+    """Replay a submission's actions; with --rerun, check which policy chose them.
 
     A re-run rolls the policy out again, on the test splits and on fresh sessions, which were not
     known when the submission was made. Its record is kept; only rows with one are ranked.
@@ -145,8 +147,8 @@ def verify(
         if path or policy_type or context.args:
             raise ValueError("A policy is rolled out again with --rerun only; add it.")
         replay_submissions([read_known(folder)], jobs)
-        typer.echo(f"All actions of {folder} lead where it says.")
-        typer.echo("Who chose them only a re-run tells: add --rerun and the policy.")
+        typer.echo(f"All actions of {folder} lead to the states that it names.")
+        typer.echo("Only a re-run shows which policy chose them: add --rerun and the policy.")
         return
     make_folder(out, "--out")
     make_folder(verifications, "--verifications")
@@ -159,7 +161,7 @@ def verify(
     (entry,) = replay_submissions([submission], jobs)
     kept = out / entry.digest[:12]
     salt = salt or verification.session_seed(kept)
-    found = verification.run_again(entry, policy, salt, kept, jobs)
+    found = verification.rerun_policy(entry, policy, salt, kept, jobs)
     file = verification.write_verification(found, verifications)
     console.print(score_formats.to_comparison(found))
     typer.echo(f"{score_formats.to_verdict(found)}\nThe record is {file}.")
@@ -206,7 +208,7 @@ def push(
 ) -> None:
     """Propose a submission to a leaderboard on the Hugging Face hub, as a pull request.
 
-    It is read as `score` reads it, but not replayed: whoever merges it scores it in any case.
+    It is read as `score` reads it, but not replayed: it is scored before it is merged.
     Log in with `hf auth login`, or put a token into HF_TOKEN.
 
     For example:

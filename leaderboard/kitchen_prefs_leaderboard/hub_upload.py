@@ -1,8 +1,8 @@
-"""What goes to the Hugging Face hub: a submission as a pull request, the page as a static Space.
+"""Uploads to the Hugging Face hub: a submission as a pull request, the page as a static Space.
 
 OWNER/NAME, a data set repository       OWNER/SPACE
     FOLDER/                                 index.html    the page
-        submission.json                     README.md     what makes it a static Space
+        submission.json                     README.md     declares a static Space
         seen.jsonl.bz2
         ...
 """
@@ -37,7 +37,7 @@ Which policy loads a dishwasher as this user likes it, after one demonstration?
 def push_submission(folder: Path, repo_id: str, name: str) -> str:
     """Propose a submission to a leaderboard by a pull request.
 
-    It is read as a scorer reads it, but not replayed: whoever merges it scores it in any case.
+    It is read and checked as for scoring, but not replayed: it is scored before it is merged.
 
     Args:
         folder: The submission.
@@ -48,7 +48,7 @@ def push_submission(folder: Path, repo_id: str, name: str) -> str:
         The address of the pull request.
 
     Raises:
-        ValueError: If it is no submission, a name is not one, or it is there already.
+        ValueError: If it is no submission, if a name is invalid, or if it was pushed already.
         OSError: If the hub cannot be reached or refuses it.
     """
     check_repo_id(repo_id)
@@ -82,7 +82,7 @@ def push_page(file: Path, repo_id: str) -> str:
 
     Args:
         file: The page.
-        repo_id: The Space, OWNER/SPACE; it is made if it is not there.
+        repo_id: The Space, OWNER/SPACE; it is created if missing.
 
     Returns:
         The Space's address.

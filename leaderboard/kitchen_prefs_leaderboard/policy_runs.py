@@ -28,10 +28,10 @@ class PolicyRun:
     options: tuple[str, ...]
 
     def roll_out(self, folder: Path, salt: int, jobs: int) -> dict[str, list[Episode]]:
-        """Roll out on the test splits; episodes that are in the folder are kept.
+        """Roll out on the test splits; episodes that are in the folder are reused.
 
         Args:
-            folder: Keeps the episodes.
+            folder: The folder of the episodes.
             salt: The session seed; 0 for the published sessions.
             jobs: How many processes share the splits.
 
@@ -66,7 +66,7 @@ class PolicyRun:
 
 
 def shares(jobs: int) -> list[list[str]]:
-    """The test splits, shared so that each process has about as many sessions.
+    """The test splits, distributed so that each process has about equally many sessions.
 
     A process for each split would load LeRobot six times, which takes longer than some splits.
     """

@@ -1,4 +1,4 @@
-"""The order of the entries: by Score, with ties where the sessions cannot tell two apart."""
+"""The order of the entries: by Score, with ties where the difference is not significant."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -10,7 +10,7 @@ from kitchen_prefs_leaderboard.verification import Verification
 
 @dataclass(frozen=True)
 class Row:
-    """An entry's place.
+    """An entry and its rank.
 
     Attributes:
         entry: The entry.
@@ -35,7 +35,7 @@ def rank(entries: Sequence[Entry], verified: dict[str, Verification]) -> dict[st
     tables = {}
     for track in TRACKS:
         rows = [Row(e, verified.get(e.digest)) for e in entries if e.submission.track == track]
-        rows.sort(key=lambda row: (-_merit(row), row.entry.submission.name))
+        rows.sort(key=lambda row: (-_ranking_score(row), row.entry.submission.name))
         if rows:
             tables[track] = [
                 *_ranked([row for row in rows if row.verification]),
@@ -44,7 +44,7 @@ def rank(entries: Sequence[Entry], verified: dict[str, Verification]) -> dict[st
     return tables
 
 
-def _merit(row: Row) -> float:
+def _ranking_score(row: Row) -> float:
     """The Score that counts: the lower one of the submission and its re-run."""
     replayed = row.entry.metrics[MEAN]["Score"].mean
     return min(replayed, row.verification.rerun.mean) if row.verification else replayed

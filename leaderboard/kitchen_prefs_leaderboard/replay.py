@@ -15,8 +15,8 @@ def replay_split(submission: SubmissionFiles, split: str) -> list[Episode]:
     """Replay a submission's episodes of a split.
 
     Raises:
-        ValueError: If the file is not what the format says, or if an episode does not begin or end
-            as it says.
+        ValueError: If the file does not follow the format, or if an episode does not begin or end
+            in the states that it names.
     """
     file = submission.folder / ACTIONS[split]
     return [
@@ -34,8 +34,8 @@ def replay(split: str, line: Line, where: str) -> Episode:
         where: Names the line in errors.
 
     Raises:
-        ValueError: If the session does not begin as the line says, if the actions end too early or
-            too late, or if the last state is another one.
+        ValueError: If the first or the last state is not the one that the line names, or if the
+            actions end too early or too late.
     """
     simulator = EpisodeSimulator(make_session(split, line.session))
     if simulator.digest() != line.first:
@@ -47,7 +47,7 @@ def replay(split: str, line: Line, where: str) -> Episode:
             raise ValueError(f"{where}: the episode ends before action {number}.")
         simulator.act(action)
     if not (simulator.terminated or simulator.truncated):
-        raise ValueError(f"{where}: the episode goes on after the last action.")
+        raise ValueError(f"{where}: the episode continues after the last action.")
     if simulator.digest() != line.last:
         raise ValueError(f"{where}: the actions do not lead to the last state that it names.")
     return simulator.episode()
@@ -89,5 +89,5 @@ def _written(
 
 
 def to_jsonl(lines: Sequence[Line]) -> bytes:
-    """Lines as they stand in a file, before compression."""
+    """The content of a file of lines, before compression."""
     return b"".join(line.model_dump_json().encode() + b"\n" for line in lines)

@@ -17,7 +17,7 @@ from kitchen_prefs_leaderboard.verification import Verification
 def to_tables(entry: Entry, by: str | None) -> Iterator[Table]:
     """An entry's metrics for the terminal."""
     grouped = entry.grouped(by) if by else {}
-    # In two parts, as all of them are wider than a terminal.
+    # Two tables, because all metrics side by side are wider than a terminal.
     for names, which in ((METRICS, "means"), (FURTHER_METRICS, "further means")):
         title = f"{entry.submission.name}: {which} with 95 % intervals"
         metrics = _table(title, "Split", *names)
@@ -30,10 +30,12 @@ def to_tables(entry: Entry, by: str | None) -> Iterator[Table]:
                 for group, of_group in of_groups.items():
                     groups.add_row(f"{split}\n{by} {group}", *_cells(of_group, names))
             yield groups
-    reasons = _table("Episodes that fell short", "Split", *next(iter(entry.failure_modes.values())))
+    modes = _table(
+        "Episodes with failure modes", "Split", *next(iter(entry.failure_modes.values()))
+    )
     for split, counts in entry.failure_modes.items():
-        reasons.add_row(split, *map(str, counts.values()))
-    yield reasons
+        modes.add_row(split, *map(str, counts.values()))
+    yield modes
 
 
 def to_comparison(found: Verification) -> Table:
@@ -47,11 +49,11 @@ def to_comparison(found: Verification) -> Table:
 
 def to_verdict(found: Verification) -> str:
     """Whether a re-run confirms a submission, in a sentence."""
-    alike = f"{found.same:.0%} of the episodes went alike"
+    same = f"{found.same:.0%} of the episodes have the same decisions"
     if found.confirmed:
-        return f"The re-run confirms the submission; {alike}."
+        return f"The re-run confirms the submission; {same}."
     where = "the same sessions" if not found.repeats else "fresh sessions"
-    return f"The re-run does NOT confirm the submission: on {where} its Score differs; {alike}."
+    return f"The re-run does NOT confirm the submission: on {where} its Score differs; {same}."
 
 
 def to_json(entries: Sequence[Entry], by: str | None) -> str:
@@ -72,7 +74,7 @@ def to_json(entries: Sequence[Entry], by: str | None) -> str:
 
 
 def to_csv(entries: Sequence[Entry], by: str | None) -> str:
-    """All metrics of entries, one a line."""
+    """All metrics of entries, one per line."""
     file = io.StringIO()
     writer = csv.writer(file, lineterminator="\n")
     writer.writerow(["name", "track", "split", by or "group", "metric", "mean", "low", "high"])
@@ -89,12 +91,12 @@ def to_csv(entries: Sequence[Entry], by: str | None) -> str:
 
 
 def _table(title: str, *heads: str) -> Table:
-    """A table that fits into 80 columns; a title is a stranger's and no markup."""
+    """A table that fits into 80 columns; its title is untrusted and not read as markup."""
     table = Table(title=Text(title), box=None, padding=(0, 1, 0, 0))
     first, *rest = heads
     table.add_column(first, no_wrap=True)
     for head in rest:
-        table.add_column(head, justify="right", min_width=9)  # "forbidden"
+        table.add_column(head, justify="right", min_width=9)  # fits "forbidden"
     return table
 
 

@@ -1,6 +1,6 @@
 """Scores submissions: every metric, from replays alone."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
@@ -14,7 +14,7 @@ from kitchen_prefs.datasets.manifest import published_fingerprint
 from kitchen_prefs.metrics import (
     Episode,
     Interval,
-    failure_modes,
+    count_failure_modes,
     mean_of_splits,
     mean_of_splits_all,
     score,
@@ -25,7 +25,7 @@ from kitchen_prefs_leaderboard.replay import replay_split
 from kitchen_prefs_leaderboard.submission_format import Submission
 from kitchen_prefs_leaderboard.submission_reading import SubmissionFiles, read_submission
 
-MEAN = "mean"  # stands beside the splits' names: each split counts the same
+MEAN = "mean"  # used like a split's name, for the mean in which each split counts the same
 
 
 @dataclass(frozen=True)
@@ -33,7 +33,7 @@ class Entry:
     """A submission and the episodes of its actions.
 
     Attributes:
-        submission: Who acted.
+        submission: The description of the submission.
         digest: A hash of all of the submission's files.
         episodes: The episodes of each test split.
     """
@@ -50,9 +50,9 @@ class Entry:
 
     @cached_property
     def failure_modes(self) -> dict[str, dict[str, int]]:
-        """For each test split, in how many episodes each thing went wrong."""
+        """For each test split, in how many episodes each failure mode occurred."""
         return {
-            split: _count(failure_modes(episode) for episode in episodes)
+            split: {mode: n for mode, (n, _) in count_failure_modes(episodes).items()}
             for split, episodes in self.episodes.items()
         }
 
@@ -79,7 +79,7 @@ def score_submissions(folders: Sequence[Path], jobs: int) -> list[Entry]:
         jobs: How many splits are replayed at once, a process for each.
 
     Raises:
-        ValueError: If one is not what the format says, or does not lead where it says.
+        ValueError: If one does not follow the format, or does not lead to the states that it names.
         OSError: If a process is killed.
     """
     return replay_submissions([read_known(folder) for folder in folders], jobs)
@@ -119,13 +119,13 @@ def read_known(folder: Path) -> SubmissionFiles:
 def difference(
     episodes: Mapping[str, Sequence[Episode]], others: Mapping[str, Sequence[Episode]]
 ) -> Interval:
-    """How much better some episodes are by Score than others of the same sessions.
+    """The difference in Score between two policies' episodes of the same sessions.
 
-    The paired bootstrap: the sessions are resampled, and each brings the difference of both.
+    The paired bootstrap: the sessions' differences are resampled.
 
     Args:
         episodes: The episodes of each split.
-        others: Those that they are compared with.
+        others: The episodes that are subtracted.
     """
     theirs = {(e.split, e.session): score(e) for of in others.values() for e in of}
     return mean_of_splits(list(episodes.values()), lambda e: score(e) - theirs[e.split, e.session])
@@ -134,7 +134,7 @@ def difference(
 def _replay(
     submissions: Sequence[SubmissionFiles], work: Sequence[tuple[int, str]], jobs: int
 ) -> dict[tuple[int, str], list[Episode]]:
-    """Replay splits of submissions; the first that does not lead where it says ends the work."""
+    """Replay splits of submissions; the first one that is refused ends the work."""
     try:
         with ProcessPoolExecutor(jobs) as pool:
             read, splits = [submissions[i] for i, _ in work], [split for _, split in work]
@@ -145,11 +145,3 @@ def _replay(
         raise OSError(
             "A process that replays was killed; give fewer --jobs if memory is short."
         ) from error
-
-
-def _count(each: Iterable[dict[str, int]]) -> dict[str, int]:
-    counted: dict[str, int] = {}
-    for reasons in each:
-        for reason, times in reasons.items():
-            counted[reason] = counted.get(reason, 0) + (times > 0)
-    return counted

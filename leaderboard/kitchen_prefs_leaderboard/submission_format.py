@@ -1,8 +1,8 @@
-"""A submission: who acted, and every action. It holds no score.
+"""A submission: its description and every action. It holds no score.
 
 FOLDER/
-    submission.json            who, what, with which versions: a `Submission`
-    seen.jsonl.bz2             one `Line` an episode, in the order of the sessions
+    submission.json            authors, policy, versions: a `Submission`
+    seen.jsonl.bz2             one `Line` per episode, in the order of the sessions
     unseen_preferences.jsonl.bz2
     ...                        one such file for each test split
 """
@@ -15,20 +15,20 @@ from pydantic import BaseModel, ConfigDict, Field, StringConstraints, Validation
 from kitchen_prefs.envs.environment import MAX_EPISODE_STEPS
 from kitchen_prefs.splits import TEST_SPLITS
 
-FORMAT = 1  # the version of what is described here
+FORMAT = 1  # the version of this format
 DESCRIPTION = "submission.json"
 ACTIONS = {split: f"{split}.jsonl.bz2" for split in TEST_SPLITS}
-# What decides how an episode goes, by the names that a reader knows.
+# The packages that an episode depends on, by their well-known names.
 PACKAGES = {
     "kitchen_prefs": "lerobot_policy_kitchen_prefs",
     **{name: name for name in ("lerobot", "torch", "mujoco", "numpy", "gymnasium")},
 }
-NOT_SAID = "not said"
+UNSPECIFIED = "not specified"
 Track = Literal["standard", "privileged", "language", "open"]
 TRACKS: tuple[str, ...] = get_args(Track)
 
-# Words with a space between, without control characters and line breaks of any kind, as a name
-# stands in terminals, too; a letter or a digit comes first, as "=" would compute in a spreadsheet.
+# Words separated by single spaces, without control characters and line breaks, because a terminal
+# shows names; they begin with a letter or digit, because a spreadsheet would evaluate "=".
 WORDS = r"^[\p{L}\p{N}][^\p{C}\p{Z}]*( [^\p{C}\p{Z}]+)*$"
 Text = Annotated[str, StringConstraints(max_length=200, pattern=WORDS)]
 Name = Annotated[str, StringConstraints(max_length=60, pattern=WORDS)]
@@ -41,19 +41,19 @@ Pose = tuple[Number, Number, Number, Number, Number, Number, Number]
 
 
 class Strict(BaseModel):
-    """Nothing that is not described, nothing that is converted, nothing infinite."""
+    """A model without extra fields, type conversion or infinite numbers."""
 
     model_config = ConfigDict(strict=True, extra="forbid", frozen=True, allow_inf_nan=False)
 
 
 class Policy(Strict):
-    """What chose the actions.
+    """The policy that chose the actions.
 
     Attributes:
-        type: The policy's type, such as "ttp"; of another program any word.
-        parameters: How many numbers it has learned; None if that is no sensible question.
-        checkpoint: The fingerprint of a LeRobot checkpoint; None for another program, which can be
-            replayed and not run again.
+        type: The policy's type, such as "ttp"; any name for another program.
+        parameters: The number of learned parameters; None where that does not apply.
+        checkpoint: The fingerprint of a LeRobot checkpoint; None for another program, whose
+            actions can be replayed but not re-run.
     """
 
     type: Name
@@ -62,20 +62,20 @@ class Policy(Strict):
 
 
 class Submission(Strict):
-    """Who acted, on which data and with which programs.
+    """The description of a submission.
 
     Attributes:
         format: The version of this format.
-        name: What the row is called.
+        name: The name of the entry.
         authors: Who submits it.
         link: Where to read more.
-        track: What the policy was allowed to use.
-        policy: What chose the actions.
+        track: What the policy may use.
+        policy: The policy that chose the actions.
         data_version: The version of the sessions.
-        fingerprints: Those of the test splits' data sets.
-        packages: The versions of the programs.
-        hardware: What it was trained on.
-        training: On what, how long.
+        fingerprints: The fingerprints of the test splits' data sets.
+        packages: The versions of the packages.
+        hardware: The hardware of the training.
+        training: The data and the number of steps of the training.
     """
 
     format: Literal[1]
@@ -97,7 +97,7 @@ class Line(Strict):
     Attributes:
         session: The session's index.
         first: The hash of its first state.
-        actions: The actions, (T, 7); on a wire tuples are lists.
+        actions: The actions, (T, 7).
         last: The hash of its last state and of all decisions that led there.
     """
 
@@ -108,11 +108,11 @@ class Line(Strict):
 
 
 def complaint(error: ValidationError) -> str:
-    """The first thing that is wrong, in a few words that a terminal can show."""
+    """The first validation error, in a few printable words."""
     first = error.errors(include_url=False, include_input=False)[0]
     at = ".".join(str(step)[:40] for step in first["loc"][:6])
     words = f"{f'{at}: ' if at else ''}{first['msg'][:200]}."
-    # A field that is too many has whatever name a stranger gave it.
+    # The name of an extra field is untrusted.
     return "".join(character if character.isprintable() else "?" for character in words)
 
 

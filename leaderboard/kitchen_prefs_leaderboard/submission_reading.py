@@ -1,6 +1,6 @@
-"""Reads a submission, whose files are not trusted.
+"""Reads a submission, whose files are untrusted.
 
-No link is followed, nothing is read beyond its bound, nothing is executed, and an error is one
+No link is followed, nothing is read beyond its size limit, nothing is executed, and an error is one
 sentence.
 """
 
@@ -29,20 +29,20 @@ MOST_COMPRESSED = 1024 * 1024  # bytes of one split; ours have some 100,000
 # Bytes of one split before compression. The largest split, 210 episodes of 160 decisions, each
 # written in 80 characters, has 2.7 million.
 MOST_LINES = 4 * 1024 * 1024
-# Bytes of one episode: 160 actions of 7 numbers, each of at most 25 characters, have 28,000. Every
-# mistake in it is noted, which takes up to 150 times its size.
+# Bytes of one episode: 160 actions of 7 numbers, each of at most 25 characters, have 28,000.
+# Pydantic collects every error in it, which takes up to 150 times its size.
 MOST_LINE = 64 * 1024
 
 
 @dataclass(frozen=True)
 class SubmissionFiles:
-    """A submission as it was read from disk, once.
+    """The files of a submission, read once.
 
-    It holds the files' bytes, some 600,000 of an honest submission, and parses the lines of a split
-    when they are asked for: parsed, they need fifty times the memory.
+    It holds the files' bytes, about 600,000 of an honest submission, and parses the lines of a
+    split on demand: parsed, they need fifty times the memory.
 
     Attributes:
-        folder: Where it was read.
+        folder: The submission's folder.
         description: The submission's description, parsed.
         contents: Each file's bytes, by its name.
     """
@@ -71,7 +71,7 @@ class SubmissionFiles:
 
 
 def read_submission(folder: Path) -> SubmissionFiles:
-    """Read a submission's files, each once and within its bound; the description is parsed first.
+    """Read a submission's files, each within its size limit; the description is parsed first.
 
     Raises:
         ValueError: If a file is missing or too large, or if `submission.json` is no `Submission`.
@@ -107,8 +107,8 @@ def parse_lines(content: bytes, split: str, file: Path) -> list[Line]:
     for index, line in enumerate(lines):
         if line.session != index:
             raise ValueError(
-                f"{file}, line {index + 1} is session {line.session}; each session stands there "
-                "once, in order from 0."
+                f"{file}, line {index + 1} is session {line.session}; each session appears once, "
+                "in order from 0."
             )
     wanted = get_split(split).sessions
     if len(lines) != wanted:
@@ -164,4 +164,4 @@ def _parse[Model: BaseModel](model: type[Model], content: bytes, where: str) -> 
     try:
         return model.model_validate_json(content)
     except ValidationError as error:
-        raise ValueError(f"{where} is not what the format says: {complaint(error)}") from error
+        raise ValueError(f"{where} does not follow the format: {complaint(error)}") from error

@@ -21,7 +21,7 @@ from kitchen_prefs_leaderboard.submission_format import (
     ACTIONS,
     DESCRIPTION,
     FORMAT,
-    NOT_SAID,
+    UNSPECIFIED,
     Policy,
     Submission,
     complaint,
@@ -30,10 +30,10 @@ from kitchen_prefs_leaderboard.submission_format import (
 
 
 def check_replaceable(folder: Path) -> None:
-    """Make sure that nothing is lost when a submission is written there.
+    """Check that writing a submission there overwrites nothing else.
 
     Raises:
-        ValueError: If something else than a submission is there.
+        ValueError: If anything but a submission is there.
     """
     known = {DESCRIPTION, *ACTIONS.values()}
     ours = folder.is_dir() and not folder.is_symlink()
@@ -44,30 +44,30 @@ def check_replaceable(folder: Path) -> None:
 def write_submission(
     submission: Submission, rolled_out: Mapping[str, Sequence[Episode]], folder: Path
 ) -> None:
-    """Write a submission, whole or not at all.
+    """Write a submission atomically.
 
     Args:
-        submission: Who acted.
+        submission: The description.
         rolled_out: The episodes of each test split, in the order of the sessions.
-        folder: The submission's; an older one there is replaced.
+        folder: The submission's folder; an older submission there is replaced.
     """
     check_replaceable(folder)
-    with atomic_folder(folder) as beside:
+    with atomic_folder(folder) as unfinished:
         for split, episodes in tqdm(rolled_out.items(), "Writing", unit="split", leave=False):
             lines = to_jsonl([write_line(episode) for episode in episodes])
-            # A fifth smaller than gzip, and without a time in it: the same actions, the same bytes.
-            (beside / ACTIONS[split]).write_bytes(bz2.compress(lines))
-        (beside / DESCRIPTION).write_text(submission.model_dump_json(indent=2) + "\n")
+            # A fifth smaller than gzip, and without a time stamp: equal actions give equal bytes.
+            (unfinished / ACTIONS[split]).write_bytes(bz2.compress(lines))
+        (unfinished / DESCRIPTION).write_text(submission.model_dump_json(indent=2) + "\n")
 
 
 def describe(**about: Any) -> Submission:
-    """Describe a submission, with the versions that are installed here.
+    """Describe a submission, with the versions of the installed packages.
 
     Args:
         about: The fields of a `Submission` that only its author knows.
 
     Raises:
-        ValueError: If one of them is not as the format says.
+        ValueError: If one of them does not follow the format.
     """
     fingerprints = {
         dataset: published_fingerprint(dataset)
@@ -96,11 +96,11 @@ def policy_of(loaded_policy: LoadedPolicy) -> Policy:
 
 
 def training_of(path: str) -> str:
-    """What lerobot-train left of a training in a checkpoint, in a few words."""
+    """The training of a checkpoint in a few words, from lerobot-train's train_config.json."""
     file = find_checkpoint(path) / TRAIN_CONFIG_NAME
     try:
         config = json.loads(file.read_text())
         data = config["dataset"]["repo_id"]
         return f"{config['steps']} steps of {config['batch_size']} decisions of {data}"
     except (OSError, ValueError, KeyError, TypeError):  # another program's file, or none
-        return NOT_SAID
+        return UNSPECIFIED

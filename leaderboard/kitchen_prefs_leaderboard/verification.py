@@ -1,8 +1,8 @@
-"""Re-runs: the one thing that a replay cannot prove is who chose the actions.
+"""Re-runs: they prove what a replay cannot, that the policy chose the actions.
 
 The submitted checkpoint is rolled out again, on the test splits and on fresh sessions, which were
-not known when the submission was made. The record is kept by whoever runs the leaderboard, never in
-a submission: VERIFICATIONS/<digest of the submission>.json.
+not known when the submission was made. The record is kept by the maintainers of the leaderboard,
+never in a submission: VERIFICATIONS/<digest of the submission>.json.
 """
 
 import secrets
@@ -28,11 +28,11 @@ from kitchen_prefs_leaderboard.submission_format import (
 )
 
 if TYPE_CHECKING:
-    from kitchen_prefs_leaderboard.policy_runs import PolicyRun  # brings torch
+    from kitchen_prefs_leaderboard.policy_runs import PolicyRun  # imports torch
 
 
-class Means(Strict):
-    """A mean and its 95 % interval."""
+class ScoreInterval(Strict):
+    """The mean Score over the test splits and its 95 % interval."""
 
     mean: float
     low: float
@@ -44,23 +44,23 @@ class Verification(Strict):
 
     Attributes:
         digest: The hash of the submission's files.
-        packages: The versions of the programs that ran it.
+        packages: The versions of the packages that ran it.
         salt: The session seed of the fresh sessions.
-        same: The share of the submission's episodes in which it decided the same.
+        same: The share of episodes with the same decisions as in the submission.
         replayed: Score of the submission's actions.
         rerun: Score of the policy on the same sessions.
         fresh: Score of the policy on the fresh sessions.
-        repeats: Whether it is as good on the same sessions as the submission.
-        generalises: Whether it is as good on the fresh sessions.
+        repeats: Whether its Score on the same sessions agrees with the submission's.
+        generalises: Whether its Score on the fresh sessions is not significantly lower.
     """
 
     digest: Hash
     packages: Annotated[dict[Name, Name], Field(max_length=50)]
     salt: Annotated[int, Field(ge=1)]
     same: Annotated[float, Field(ge=0, le=1)]
-    replayed: Means
-    rerun: Means
-    fresh: Means
+    replayed: ScoreInterval
+    rerun: ScoreInterval
+    fresh: ScoreInterval
     repeats: bool
     generalises: bool
 
@@ -82,7 +82,7 @@ def read_verifications(folder: Path) -> dict[str, Verification]:
             verification = Verification.model_validate_json(file.read_bytes())
         except ValidationError as error:
             raise ValueError(
-                f"{file} is no record of a re-run; delete it and verify anew."
+                f"{file} is no record of a re-run; delete it and verify again."
             ) from error
         if verification.confirmed:
             found[verification.digest] = verification
@@ -90,7 +90,7 @@ def read_verifications(folder: Path) -> dict[str, Verification]:
 
 
 def write_verification(verification: Verification, folder: Path) -> Path:
-    """Keep the record of a re-run."""
+    """Write the record of a re-run."""
     folder.mkdir(parents=True, exist_ok=True)
     file = folder / f"{verification.digest}.json"
     write_json(file, verification.model_dump())
@@ -98,7 +98,7 @@ def write_verification(verification: Verification, folder: Path) -> Path:
 
 
 def check_policy(submission: Submission, policy: Policy) -> None:
-    """Make sure that a policy is the one that a submission names.
+    """Check that a policy is the one that a submission names.
 
     Args:
         submission: The description of the submission.
@@ -108,7 +108,7 @@ def check_policy(submission: Submission, policy: Policy) -> None:
         ValueError: If it is another one, or if the submission names none.
     """
     if submission.policy.checkpoint is None:
-        raise ValueError("The submission names no checkpoint, so nothing can be run again.")
+        raise ValueError("The submission names no checkpoint, so it cannot be re-run.")
     if submission.policy != policy:
         raise ValueError(
             f"The submission is of another policy ({_named(submission.policy)}) than this one "
@@ -124,7 +124,7 @@ def session_seed(folder: Path) -> int:
     return secrets.randbelow(FRESH_SALTS - 1) + 1
 
 
-def run_again(
+def rerun_policy(
     entry: Entry, policy: "PolicyRun", salt: int, folder: Path, jobs: int
 ) -> Verification:
     """Roll a policy out on the published and on fresh sessions, and compare with a submission.
@@ -133,7 +133,7 @@ def run_again(
         entry: The submission, replayed.
         policy: The policy that the submission names.
         salt: The session seed of the fresh sessions.
-        folder: Keeps the episodes; those that are there are kept.
+        folder: The folder of the episodes; those that it holds are reused.
         jobs: How many processes share the splits.
 
     Raises:
@@ -153,7 +153,8 @@ def compare(
 
     It confirms the submission if on the same sessions the paired interval of the difference in
     Score holds zero, and if on fresh sessions the policy is not worse by more than both intervals
-    allow, their halves added as those of independent means: it has not learned the published ones.
+    allow, their half-widths combined as for independent means: it is not fitted to the published
+    sessions.
 
     Args:
         entry: The submission, replayed.
@@ -165,18 +166,18 @@ def compare(
     pairs = [(mine[e.split, e.session], e) for episodes in rerun.values() for e in episodes]
     gain = difference(rerun, entry.episodes)
     replayed = entry.metrics[MEAN]["Score"]
-    anew = mean_of_splits(list(fresh.values()), score)
+    on_fresh = mean_of_splits(list(fresh.values()), score)
     return Verification(
         digest=entry.digest,
         packages=installed_packages(),
         salt=salt,
         same=sum(one.decisions == other.decisions for one, other in pairs) / len(pairs),
-        replayed=_means(replayed),
-        rerun=_means(mean_of_splits(list(rerun.values()), score)),
-        fresh=_means(anew),
+        replayed=_score_interval(replayed),
+        rerun=_score_interval(mean_of_splits(list(rerun.values()), score)),
+        fresh=_score_interval(on_fresh),
         repeats=gain.low <= 0 <= gain.high,
-        generalises=replayed.mean - anew.mean
-        <= hypot(replayed.mean - replayed.low, anew.high - anew.mean),
+        generalises=replayed.mean - on_fresh.mean
+        <= hypot(replayed.mean - replayed.low, on_fresh.high - on_fresh.mean),
     )
 
 
@@ -185,5 +186,5 @@ def _named(policy: Policy) -> str:
     return f"{policy.type}, {policy.parameters} parameters, {checkpoint}"
 
 
-def _means(interval: Interval) -> Means:
-    return Means(**asdict(interval.rounded()))
+def _score_interval(interval: Interval) -> ScoreInterval:
+    return ScoreInterval(**asdict(interval.rounded()))

@@ -52,7 +52,7 @@ class TrainingRun:
 
     @property
     def log(self) -> Path:
-        """The output of lerobot-train, over all starts of the run."""
+        """The output of lerobot-train, from the first start and all resumptions."""
         return self.folder.with_suffix(".log")
 
     @property
@@ -96,13 +96,13 @@ class TrainingRun:
     ) -> None:
         """Train until the last step; a run that was stopped resumes from its last checkpoint.
 
-        Several tables may need one run: a second process waits until the first is done with it.
+        Tables may share a run: a second process waits until the first has finished it.
 
         Args:
             recipe: The recipe's name.
             options: Options of lerobot-train that override the recipe.
             log_freq: Steps between two lines of the log; if not given, the recipe's.
-            title: Stands before the progress bar.
+            title: The label of the progress bar.
 
         Raises:
             ValueError: If the run was started by another program or with other settings.
@@ -119,13 +119,13 @@ class TrainingRun:
                 self.delete()
                 write_json(self.settings_file, _settings(recipe, options))
                 arguments = [f"--config_path={recipe_file(recipe)}", *options]
-                if log_freq is not None:  # not one of the settings: it does not change the training
+                if log_freq is not None:  # no setting, because it does not change the training
                     arguments.append(f"--log_freq={log_freq}")
             arguments.append(f"--output_dir={self.folder}")
             run_module("lerobot.scripts.lerobot_train", arguments, self.log, title)
 
     def check_settings(self, recipe: str, options: Sequence[str] = ()) -> None:
-        """Make sure that the run, if it has started, was started by `train` with these settings.
+        """Check that the run, if it has started, was started by `train` with these settings.
 
         Raises:
             ValueError: If it was not.
@@ -144,7 +144,7 @@ class TrainingRun:
             )
 
     def delete(self) -> None:
-        """Delete the run and its log, so that it starts anew."""
+        """Delete the run and its log, so that it starts from the beginning."""
         shutil.rmtree(self.folder, ignore_errors=True)
         self.log.unlink(missing_ok=True)
 
@@ -153,7 +153,7 @@ class TrainingRun:
         return [LogEntry(*map(float, found)) for found in LOG_ENTRY.findall(self.log.read_text())]
 
     def seconds_per_step(self) -> float:
-        """How long a step took, data loading included: the mean over the log.
+        """The mean duration of a step over the log, data loading included (s).
 
         Steps that were trained twice, because the run was stopped between two checkpoints, do not
         count twice.
@@ -164,7 +164,7 @@ class TrainingRun:
         steps = STEP_SECONDS.findall(self.log.read_text()) if self.log.exists() else []
         if not steps:
             raise ValueError(
-                f"{self.log} does not say how long the steps took; put the log of lerobot-train "
+                f"{self.log} holds no durations of steps; put the log of lerobot-train "
                 f"there, or delete {self.folder} to train anew."
             )
         return mean(float(update) + float(data) for update, data in steps)

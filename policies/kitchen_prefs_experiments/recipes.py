@@ -1,7 +1,7 @@
-"""Where the training recipes lie: YAML files.
+"""Finds the training recipes: YAML files.
 
 `lerobot-train --config_path` takes them, `kitchen-prefs reinforce --recipe` those of reinforcement
-learning. They lie beside this package in a checkout, `policies/recipes/`, and inside it in a wheel.
+learning. In a checkout they are beside this package, in `policies/recipes/`; in a wheel, inside it.
 """
 
 from pathlib import Path

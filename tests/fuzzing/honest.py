@@ -3,7 +3,7 @@
 ABOUT = {
     "format": 1,
     "name": "Honest",
-    "authors": ["A. Person"],
+    "authors": ["A. Author"],
     "link": "https://example.org/",
     "track": "standard",
     "policy": {"type": "by_hand", "parameters": 12, "checkpoint": "0" * 64},

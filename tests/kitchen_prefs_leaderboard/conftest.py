@@ -34,7 +34,7 @@ def description(**about):
     """What an honest submission says of itself."""
     usual = {
         "name": "The expert",
-        "authors": ["A. Person"],
+        "authors": ["A. Author"],
         "track": "privileged",
         "policy": Policy(type="expert", checkpoint="e" * 64),
         "hardware": "none",

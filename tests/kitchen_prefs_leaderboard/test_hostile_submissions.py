@@ -70,13 +70,13 @@ def write(folder):
 
 @pytest.fixture
 def folder(tmp_path):
-    return write(tmp_path / "stranger")
+    return write(tmp_path / "untrusted")
 
 
 @pytest.fixture(scope="module")
 def shared(tmp_path_factory):
     """A folder whose files are written anew for every example."""
-    return write(tmp_path_factory.mktemp("shared") / "stranger")
+    return write(tmp_path_factory.mktemp("shared") / "untrusted")
 
 
 def read_description(folder):
@@ -194,14 +194,16 @@ def test_whatever_the_poses_are(actions):
     line = Line(session=0, first=first, actions=actions, last="0" * 64)
     with warnings.catch_warnings():
         warnings.simplefilter("error")  # a warning would be a second line
-        refused(replay, "seen", line, "F", file="F", message="goes on after the last action")
+        refused(replay, "seen", line, "F", file="F", message="continues after the last action")
 
 
 @pytest.mark.parametrize("encoding", ["utf-16", "utf-32", "utf-8-sig", "latin-1", "cp037"])
 def test_other_encodings(folder, encoding):
     text = json.dumps(ABOUT | {"name": "Zoë"}, ensure_ascii=False)
     (folder / DESCRIPTION).write_bytes(text.encode(encoding))
-    refused(read_description, folder, file=folder / DESCRIPTION, message="is not what the format")
+    refused(
+        read_description, folder, file=folder / DESCRIPTION, message="does not follow the format"
+    )
 
 
 def test_a_description_that_is_cut_off_anywhere(folder):
@@ -217,7 +219,7 @@ def test_a_description_that_is_cut_off_anywhere(folder):
 def test_numbers_that_are_none(folder, number):
     line = json.dumps(EPISODE).replace("0.5", number, 1)
     (folder / SEEN).write_bytes(bz2.compress(line.encode()))
-    message = "line 1 is not what the format says"
+    message = "line 1 does not follow the format"
     refused(read_lines, folder, "seen", file=folder / SEEN, message=message)
 
 
@@ -245,7 +247,7 @@ def test_numbers_that_are_none(folder, number):
 def test_descriptions_that_are_none(folder, field, value):
     (folder / DESCRIPTION).write_text(json.dumps(ABOUT | {field: value}))
     shown = field[:40].replace("\x1b[2J\u202e", r"\?\[2J\?")
-    message = f"submission.json is not what the format says: {shown}: "
+    message = f"submission.json does not follow the format: {shown}: "
     refused(read_known, folder, file=folder / DESCRIPTION, message=message)
 
 
@@ -255,14 +257,17 @@ def test_descriptions_that_are_none(folder, field, value):
         (b"\x00" * 1000, "is not a bzip2 file"),
         (os.urandom(MOST_COMPRESSED + 1), "is larger than 1,048,576 bytes"),
         (bz2.compress(b"[" * (MOST_LINES + 1)), "holds more than 4,194,304 bytes"),
-        (bz2.compress(bz2.compress(EPISODES["seen"])), "line 1 is not what the format says"),
+        (bz2.compress(bz2.compress(EPISODES["seen"])), "line 1 does not follow the format"),
         (bz2.compress(EPISODES["seen"]) * 2, "is not one whole bzip2 file"),
         (bz2.compress(EPISODES["seen"]) + b"more", "is not one whole bzip2 file"),
         (bz2.compress(EPISODES["seen"])[:-1], "is not one whole bzip2 file"),
         (bz2.compress(b"[" * (MOST_LINE + 1)), "line 1 is longer than 65,536 bytes"),
-        (bz2.compress(b"[" * 50_000), "line 1 is not .*: recursion limit exceeded"),
-        (bz2.compress(b"\n" * MOST_LINES), "line 1 is not what the format says"),
-        (bz2.compress(EPISODES["seen"].replace(b"}\n", b"}\r", 1) + b"\r"), "line 71 is not what"),
+        (bz2.compress(b"[" * 50_000), "line 1 does not .*: recursion limit exceeded"),
+        (bz2.compress(b"\n" * MOST_LINES), "line 1 does not follow the format"),
+        (
+            bz2.compress(EPISODES["seen"].replace(b"}\n", b"}\r", 1) + b"\r"),
+            "line 71 does not",
+        ),
         (b"", "is not one whole bzip2 file"),
     ],
     ids=lambda value: value if isinstance(value, str) else "",
@@ -337,10 +342,10 @@ def greedy(tmp_path_factory):
         "many actions": bz2.compress(b'{"actions":[' + b"[0,0,0,0,0,0,0]," * 200_000 + b"0]}"),
         "many lines": bz2.compress(full * (MOST_LINES // len(full))),
     }
-    folders = {name: write(tmp_path_factory.mktemp("greedy") / "stranger") for name in lines}
+    folders = {name: write(tmp_path_factory.mktemp("greedy") / "untrusted") for name in lines}
     for name, folder in folders.items():
         (folder / SEEN).write_bytes(lines[name])
-    folders["a gigabyte"] = write(tmp_path_factory.mktemp("greedy") / "stranger")
+    folders["a gigabyte"] = write(tmp_path_factory.mktemp("greedy") / "untrusted")
     with open(folders["a gigabyte"] / DESCRIPTION, "wb") as file:
         file.truncate(10**9)
     return folders
@@ -427,7 +432,7 @@ def test_no_text_leaves_the_pages_data(text):
 
 
 def first_lies(submission, split):
-    """Stands in for a replay: the first split does not lead where it says, the others take time."""
+    """Stands in for a replay: the first split is refused, the others take time."""
     (submission.folder / f"{split}.replayed").touch()
     if split == TEST_SPLITS[0]:
         raise ValueError(f"{submission.folder} lies.")
@@ -439,7 +444,9 @@ def is_killed(submission, split):
     os.kill(os.getpid(), signal.SIGKILL)
 
 
-def test_what_is_malformed_is_said_before_anything_is_replayed(folder, tmp_path, monkeypatch):
+def test_a_malformed_submission_is_refused_before_anything_is_replayed(
+    folder, tmp_path, monkeypatch
+):
     last = write(tmp_path / "last")
     (last / "noisy.jsonl.bz2").write_bytes(b"")
     monkeypatch.setattr(scoring, "replay_split", first_lies)

@@ -20,7 +20,7 @@ SPACE = "ada/leaderboard"
 DESCRIPTION = {
     "format": 1,
     "name": "Nobody",
-    "authors": ["A. Person", "B. Person"],
+    "authors": ["A. Author", "B. Author"],
     "track": "standard",
     "policy": {"type": "none"},
     "data_version": 1,
@@ -91,7 +91,7 @@ def test_a_submission_becomes_one_pull_request_of_its_seven_files(hub, board, su
     assert proposed.files == {f"my_ttp/{name}": content for name, content in whole.items()}
     assert len(proposed.files) == 7
     assert proposed.message == "Submission my_ttp"
-    assert proposed.description == "Nobody, standard track, by A. Person, B. Person"
+    assert proposed.description == "Nobody, standard track, by A. Author, B. Author"
     assert board.files == {}
 
 
@@ -134,11 +134,11 @@ def test_a_submission_that_is_there_already_is_not_proposed_again(hub, board, su
 @pytest.mark.parametrize(
     ("file", "content", "said"),
     [
-        ("submission.json", b"{}", "submission.json is not what the format says"),
+        ("submission.json", b"{}", "submission.json does not follow the format"),
         (
             "seen.jsonl.bz2",
             bz2.compress(b"{}"),
-            "seen.jsonl.bz2, line 1 is not what the format",
+            "seen.jsonl.bz2, line 1 does not follow the format",
         ),
         ("noisy.jsonl.bz2", b"", "noisy.jsonl.bz2 is not one whole bzip2 file"),
     ],

@@ -18,7 +18,7 @@ from kitchen_prefs_leaderboard import commands, scoring
 from kitchen_prefs_leaderboard.page.building import write_page
 from kitchen_prefs_leaderboard.ranking import rank
 from kitchen_prefs_leaderboard.scoring import Entry, score_submissions
-from kitchen_prefs_leaderboard.verification import Means, Verification
+from kitchen_prefs_leaderboard.verification import ScoreInterval, Verification
 
 CHROMIUM = Path("/usr/bin/chromium")
 PATIENCE = 120_000  # milliseconds; the machine may be busy
@@ -80,7 +80,7 @@ def entries(expert_submission):
 @pytest.fixture(scope="module")
 def verified(entries):
     """A re-run that confirms the expert."""
-    means = Means(mean=1, low=1, high=1)
+    means = ScoreInterval(mean=1, low=1, high=1)
     return {
         entries[0].digest: Verification(
             digest=entries[0].digest,

@@ -70,7 +70,7 @@ def test_what_a_rerun_does_not_reach_does_not_count(make_entry):
     assert [row.entry.submission.name for row in rows] == ["b", "a"]
 
 
-def test_rows_that_were_only_replayed_stand_last_however_good(make_entry, shown):
+def test_rows_that_were_only_replayed_come_last_however_good(make_entry, shown):
     good, bad = make_entry("a"), make_entry("b", worse=ALL)
     assert shown([good, bad], again=[bad]) == {"privileged": [("b", 1, False), ("a", None, False)]}
 

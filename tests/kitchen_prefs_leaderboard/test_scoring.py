@@ -45,8 +45,8 @@ def played_at_random(split, index, seed, jitter=0.0):
 
 
 @pytest.fixture(scope="module")
-def played():
-    """Episodes that were played at random."""
+def rolled_out():
+    """Episodes of random decisions."""
     return {
         split: [played_at_random(split, i, seed=i) for i in range(SESSIONS)]
         for split in TEST_SPLITS
@@ -54,10 +54,10 @@ def played():
 
 
 @pytest.fixture(scope="module")
-def folder(played, make_entry, tmp_path_factory):
+def folder(rolled_out, make_entry, tmp_path_factory):
     """The submission of these episodes."""
     folder = tmp_path_factory.mktemp("random") / "submission"
-    write_submission(make_entry("a").submission, played, folder)
+    write_submission(make_entry("a").submission, rolled_out, folder)
     return folder
 
 
@@ -118,11 +118,12 @@ def test_two_scorings_print_the_same_bytes(folder, entry, by):
     assert printed(score_submissions([folder], 2)[0], by) == printed(entry, by)
 
 
-def test_a_replay_has_the_metrics_of_the_episodes_that_were_played(played, entry):
-    for split, episodes in played.items():
+def test_a_replay_has_the_metrics_of_the_rollouts(rolled_out, entry):
+    for split, episodes in rolled_out.items():
         assert entry.metrics[split] == {n: summarise(episodes, m) for n, m in ALL_METRICS.items()}
     assert entry.metrics["mean"] == {
-        name: mean_of_splits(list(played.values()), metric) for name, metric in ALL_METRICS.items()
+        name: mean_of_splits(list(rolled_out.values()), metric)
+        for name, metric in ALL_METRICS.items()
     }
 
 
@@ -164,7 +165,7 @@ def test_the_groups_means_weighted_back_are_the_splits(entry, by):
             assert of_split[labels[0]][name].mean == pytest.approx(np.mean(first))
 
 
-def test_a_strangers_name_is_printed_as_it_is(entry):
+def test_an_untrusted_name_is_printed_verbatim(entry):
     name = "[/red] [bold]me[/] :skull:"
     theirs = replace(entry, submission=entry.submission.model_copy(update={"name": name}))
     for text in printed(theirs, "count"):

@@ -1,4 +1,4 @@
-"""The commands `submit` and `verify` with a policy that plays; the test splits are cut short."""
+"""The commands `submit` and `verify` roll a policy out; the test splits are cut short."""
 
 import bz2
 import json
@@ -27,7 +27,7 @@ CHECKPOINT = Path(__file__).parents[2] / "policies" / "checkpoints" / "ttp_quick
 SYMBOLIC = ("--policy.type=rules", "--policy.rule=symbolic")
 SUBMIT = (
     *("leaderboard", "submit", "--name=Symbolic", "--track=standard", "--training=none"),
-    *("--author=A. Person", "--author=B. Person", *SYMBOLIC),
+    *("--author=A. Author", "--author=B. Author", *SYMBOLIC),
 )
 
 pytestmark = pytest.mark.usefixtures("few_sessions")
@@ -61,7 +61,7 @@ def entry(submitted):
 
 @pytest.fixture
 def here(monkeypatch):
-    """Lets splits be played in this process, as another would have to load LeRobot."""
+    """Lets splits be rolled out in this process, as another would have to load LeRobot."""
 
     def run_module(module, arguments, log, name):
         assert module == "kitchen_prefs.cli"
@@ -87,7 +87,7 @@ def test_a_submission_says_who_acted_and_holds_no_score(submitted):
     assert about == {
         "format": 1,
         "name": "Symbolic",
-        "authors": ["A. Person", "B. Person"],
+        "authors": ["A. Author", "B. Author"],
         "link": None,
         "track": "standard",
         "policy": {
@@ -110,9 +110,10 @@ def test_a_submission_says_who_acted_and_holds_no_score(submitted):
 def test_its_actions_lead_where_they_led_when_they_were_played(submitted, entry):
     folder = episodes_of(submitted)
     for split, episodes in entry.episodes.items():
-        played = sorted(read_episodes(folder / f"{split}.jsonl"), key=lambda one: one.session)
+        rolled_out = sorted(read_episodes(folder / f"{split}.jsonl"), key=lambda one: one.session)
         assert episodes == [
-            replace(one, actions=again.actions) for one, again in zip(played, episodes, strict=True)
+            replace(one, actions=again.actions)
+            for one, again in zip(rolled_out, episodes, strict=True)
         ]
         said = json.loads((folder / f"{split}.json").read_text())["metrics"]
         assert {name: vars(interval) for name, interval in entry.metrics[split].items()} == said
@@ -133,16 +134,16 @@ def test_submitting_again_plays_what_is_missing_and_gives_the_same_bytes(
     submitted, here, kitchen_prefs, tmp_path
 ):
     out = tmp_path / "again"
-    played = contents(episodes_of(submitted))
+    rolled_out = contents(episodes_of(submitted))
     episodes_of(out).mkdir()
-    for name, content in played.items():
+    for name, content in rolled_out.items():
         (episodes_of(out) / name).write_bytes(content)
     cut = episodes_of(out) / "seen.jsonl"
     cut.write_bytes(cut.read_bytes()[:-100])
     for _ in range(2):  # the second one replaces what the first one wrote
         assert kitchen_prefs(*SUBMIT, f"--out={out}", "--jobs=1") == 0
         assert contents(out) == contents(submitted)
-        assert contents(episodes_of(out)) == played
+        assert contents(episodes_of(out)) == rolled_out
 
 
 @pytest.mark.parametrize(
@@ -254,8 +255,10 @@ def test_processes_share_the_splits(jobs):
 
 @pytest.mark.lerobot
 @pytest.mark.slow
-def test_who_chose_the_actions_only_a_rerun_tells(submitted, kitchen_prefs, capsys):
+def test_only_a_rerun_shows_who_chose_the_actions(submitted, kitchen_prefs, capsys):
     assert kitchen_prefs("leaderboard", "verify", submitted) == 0
-    assert "Who chose them only a re-run tells" in " ".join(capsys.readouterr().out.split())
+    assert "Only a re-run shows which policy chose them" in " ".join(
+        capsys.readouterr().out.split()
+    )
     said = kitchen_prefs("leaderboard", "verify", submitted, "--policy.path=anything")
     assert said == "kitchen-prefs: A policy is rolled out again with --rerun only; add it."

@@ -57,7 +57,7 @@ def test_actions_of_another_session(submission):
 def test_reordered_lines(submission):
     lines = lines_of(submission)
     write(submission, [lines[1], lines[0], *lines[2:]])
-    refused(submission, "line 1 is session 1; each session stands there once")
+    refused(submission, "line 1 is session 1; each session appears once")
 
 
 def test_a_line_that_is_there_twice(submission):
@@ -74,7 +74,7 @@ def test_a_line_that_is_missing(submission):
 def test_a_line_that_is_cut_off(submission):
     lines = lines_of(submission)
     write(submission, [lines[0][:200], *lines[1:]])
-    refused(submission, "line 1 is not what the format says")
+    refused(submission, "line 1 does not follow the format")
 
 
 @pytest.mark.parametrize("position", [5, 10, -2])
@@ -99,7 +99,7 @@ def test_an_end_that_is_left_out(submission):
     lines = lines_of(submission)
     lines[0] = edited(lines[0], actions=json.loads(lines[0])["actions"][:-1])
     write(submission, lines)
-    refused(submission, "line 1: the episode goes on after the last action")
+    refused(submission, "line 1: the episode continues after the last action")
 
 
 def test_a_forbidden_decision_that_is_hidden(submission):

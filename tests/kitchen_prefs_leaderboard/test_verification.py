@@ -21,10 +21,10 @@ ALL = range(6)  # all sessions of a split that was cut short
 def found(few_episodes):
     """What a re-run of an entry comes to, in which some sessions go badly."""
 
-    def judged(entry, rerun=(), fresh=()):
+    def compared(entry, rerun=(), fresh=()):
         return compare(entry, few_episodes(rerun), few_episodes(fresh, SALT), SALT)
 
-    return judged
+    return compared
 
 
 def test_the_same_policy_confirms(make_entry, found):
@@ -90,7 +90,7 @@ def test_a_later_rerun_that_does_not_confirm_takes_the_rank_away(make_entry, fou
 @pytest.mark.parametrize("content", ["", "[]", "{}", '{"confirmed": true}'])
 def test_what_is_no_record_is_said_in_one_sentence(content, tmp_path):
     (tmp_path / "x.json").write_text(content)
-    with pytest.raises(ValueError, match=r"x.json is no record of a re-run; delete it .*anew\.$"):
+    with pytest.raises(ValueError, match=r"x.json is no record of a re-run; delete it .*again\.$"):
         read_verifications(tmp_path)
 
 

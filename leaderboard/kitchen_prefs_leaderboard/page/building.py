@@ -56,8 +56,8 @@ def write_page(tables: Mapping[str, Sequence[Row]], out: Path) -> None:
         out: The file.
     """
     html = to_html(page_data(tables))
-    with atomic_file(out) as beside:
-        beside.write_text(html, encoding="utf-8")
+    with atomic_file(out) as unfinished:
+        unfinished.write_text(html, encoding="utf-8")
 
 
 def page_data(tables: Mapping[str, Sequence[Row]]) -> dict[str, Any]:

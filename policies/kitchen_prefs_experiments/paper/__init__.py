@@ -1,7 +1,7 @@
 """`kitchen-prefs reproduce`, `results` and `readme-table`: the paper's tables, in our kitchen.
 
 evaluated_policies  committed checkpoints, rules, trainings and fine-tunings: the tables' rows
-table_types         what a table is, and what a table of learning curves is
+table_types         the definitions of a table and of a table of learning curves
 paper_tables        each table's rows, splits and metrics, and the paper's values
 prepared_policies   policies that are ready to be evaluated: trained where they have to be
 table_runner        runs a table: trainings, evaluations, metrics

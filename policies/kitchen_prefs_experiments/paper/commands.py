@@ -22,10 +22,10 @@ Results = Annotated[Path, typer.Option(help="The folder of the tables' JSON and 
 def reproduce(
     tables: Annotated[list[str], typer.Argument(metavar="TABLE", help=f"Of {', '.join(TABLES)}.")],
     budget: Annotated[
-        int, typer.Option(help="How many decisions each training of a table sees.", min=1)
+        int, typer.Option(help="The number of decisions in each training of a table.", min=1)
     ] = 32_000,  # 1,000 steps of 32: some 15 minutes on two cores
     jobs: Annotated[
-        int, typer.Option(help="How many policies are trained at once, a core for each.", min=1)
+        int, typer.Option(help="The number of policies trained at once, one per core.", min=1)
     ] = 2,
     out: Annotated[Path, typer.Option(help="The folder of the runs and episodes.")] = Path(
         "outputs/reproduce"
@@ -34,9 +34,9 @@ def reproduce(
 ) -> None:
     """Re-run tables of the paper: train what they need, evaluate it, write JSON and a picture.
 
-    What is finished is kept: a command that was stopped goes on where it was.
-    The table "learning" takes the recipes as they are, with runs in outputs/;
-    --budget, --jobs and --out do not concern it.
+    Finished runs and episodes are kept: a command that was stopped resumes.
+    The table "learning" runs the recipes unchanged, in outputs/;
+    --budget, --jobs and --out do not apply to it.
 
     For example:
     kitchen-prefs reproduce main counts
@@ -63,7 +63,7 @@ def reproduce(
 
 @app.command("results")
 def write_pages(results: Results = Path("docs/results")) -> None:
-    """Write the pages and pictures of the results, from what the folder holds alone.
+    """Write the pages and pictures of the results, from the files in the folder alone.
 
     For example:
     kitchen-prefs results
@@ -73,8 +73,8 @@ def write_pages(results: Results = Path("docs/results")) -> None:
     from kitchen_prefs_experiments.paper.results_page import pages
 
     for name, text in pages(results).items():
-        with atomic_file(results / f"{name}.md") as beside:
-            beside.write_text(text)
+        with atomic_file(results / f"{name}.md") as unfinished:
+            unfinished.write_text(text)
     for name, found in read_results(results).items():
         draw(TABLES[name], found, results / f"{name}.png")
     typer.echo(f"The pages are in {results}; index.md is the overview.")
@@ -85,7 +85,7 @@ def readme_table(
     scores: Annotated[
         Path, typer.Option(help="The JSON of `kitchen-prefs leaderboard score`.")
     ] = Path("leaderboard/scores.json"),
-    readme: Annotated[Path, typer.Option(help="Holds the table.")] = Path("README.md"),
+    readme: Annotated[Path, typer.Option(help="The file with the table.")] = Path("README.md"),
 ) -> None:
     """Write the README's table of results from the leaderboard's scores.
 
@@ -95,6 +95,6 @@ def readme_table(
     from kitchen_prefs_experiments.paper.readme_table import replace_table
 
     text = replace_table(readme.read_text(), json.loads(scores.read_text()))
-    with atomic_file(readme) as beside:
-        beside.write_text(text)
+    with atomic_file(readme) as unfinished:
+        unfinished.write_text(text)
     typer.echo(f"The table is in {readme}.")

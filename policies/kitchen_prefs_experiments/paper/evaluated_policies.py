@@ -7,9 +7,9 @@ from pathlib import Path
 from kitchen_prefs.splits import DATA_VERSION, HELD_OUT_USERS
 from kitchen_prefs_experiments.recipes import recipe_file
 
-RECIPE = "ttp_quick"  # what most trainings start from: it learns from nothing in minutes
+RECIPE = "ttp_quick"  # the recipe of most trainings: it needs only minutes
 
-# A network that has learned already needs small steps and no warm-up, and one preference as it is.
+# A trained network needs small steps and no warm-up; one preference is not relabelled.
 FINE_TUNING = (
     "--policy.relabel=false",
     "--policy.rounds=1",
@@ -20,10 +20,10 @@ FINE_TUNING = (
 
 @dataclass(frozen=True)
 class Committed:
-    """A checkpoint that the repository holds, `policies/checkpoints/<name>`.
+    """A checkpoint in the repository, `policies/checkpoints/<name>`.
 
     Attributes:
-        name: Names the checkpoint.
+        name: The checkpoint's name.
         prompts: How many demonstrations prompt an episode.
     """
 
@@ -50,7 +50,7 @@ class Rule:
     """A rule of the policy type "rules", which needs no training.
 
     Attributes:
-        name: Names the rule.
+        name: The rule's name.
         prompts: How many demonstrations prompt an episode.
     """
 
@@ -63,12 +63,11 @@ class Training:
     """A training of a recipe with some settings overridden.
 
     Attributes:
-        name: Names the run's folder, so trainings with one name are one training.
-        dataset: What it is trained on.
-        batch_size: How many decisions a step sees.
+        name: The name of the run's folder; trainings of the same name share a run.
+        dataset: The name of the training data set.
+        batch_size: The number of decisions in a step.
         overrides: Further options of lerobot-train.
-        preference: The label of the preference whose sessions alone it is measured on; None for
-            all.
+        preference: The label of the only preference whose sessions are evaluated; None for all.
         recipe: The recipe.
     """
 
@@ -80,15 +79,15 @@ class Training:
     recipe: str = RECIPE
 
     def steps(self, budget: int) -> int:
-        """How many steps see `budget` decisions.
+        """The number of training steps for a budget of decisions.
 
         Raises:
-            ValueError: If it is not one step.
+            ValueError: If the budget is smaller than one batch.
         """
         if budget < self.batch_size:
             raise ValueError(
-                f"A budget of {budget} decisions is not one batch of {self.batch_size}; give a "
-                "greater --budget."
+                f"A budget of {budget} decisions is less than one batch of {self.batch_size}; give "
+                "a greater --budget."
             )
         return budget // self.batch_size
 
@@ -104,11 +103,11 @@ class Training:
 
 @dataclass(frozen=True)
 class FineTuning:
-    """A training that goes on with one demonstration of a held-out preference, once for each.
+    """Continues a training on one demonstration of a held-out preference, once for each.
 
     Attributes:
-        start: The training whose checkpoint they all begin from.
-        steps: How many steps each takes.
+        start: The training whose checkpoint is fine-tuned.
+        steps: The number of steps of each fine-tuning.
     """
 
     start: Training
@@ -116,17 +115,17 @@ class FineTuning:
 
     @property
     def name(self) -> str:
-        """Names the folder of the runs."""
+        """The name of the folder of the runs."""
         return f"fine-tuned-{self.steps}"
 
     @property
     def budget(self) -> int:
-        """How many decisions each sees."""
+        """The number of decisions in each fine-tuning."""
         return self.steps * self.start.batch_size
 
     @property
     def trainings(self) -> tuple[Training, ...]:
-        """One for each held-out preference, measured on the sessions of that one alone."""
+        """One for each held-out preference, evaluated on the sessions of that preference alone."""
         return tuple(
             Training(
                 name=f"preference-{label + 1}",
@@ -140,7 +139,7 @@ class FineTuning:
 
 
 def numbered(name: str, prompts: int) -> str:
-    """The name of a policy with its number of prompts, if that is not one."""
+    """A policy's name, followed by its number of prompts if that is not 1."""
     return name if prompts == 1 else f"{name}-{prompts}-prompts"
 
 
@@ -175,7 +174,7 @@ def demonstrations(number: int) -> Training:
 
 
 def hidden(*attributes: str) -> Training:
-    """Trained without seeing some attributes of instances."""
+    """Trained with some attributes of the instances hidden."""
     override = f"--policy.hidden={json.dumps(attributes)}"  # LeRobot reads lists as JSON
     return Training(f"hidden-{'-'.join(attributes)}", overrides=(override,))
 
@@ -187,13 +186,13 @@ def encoding(attribute: str, encoder: str) -> Training:
 
 
 def history(decisions: int) -> Training:
-    """Trained on one preference, with some earlier decisions in sight beside the present one."""
+    """Trained on one preference, with some earlier decisions in the observation."""
     return Training(
         f"history-{decisions}",
         f"dishwasher-train-p1-d80-v{DATA_VERSION}",
         overrides=(
             f"--policy.context_history={decisions}",
-            # TTP demands both with a history; without one they keep the rows comparable.
+            # TTP requires both with a history; without one they keep the rows comparable.
             "--policy.relabel=false",
             "--policy.situation_time=true",
         ),

@@ -20,15 +20,15 @@ AXES = {
 # Okabe and Ito's colours, safe for colour-blind readers; the paper's are black and grey.
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#E69F00", "#56B4E9", "#CC79A7", "#8A7A2E", "#882255")
 PAPER_COLOURS = ("#000000", "#888888")
-STEP = 14  # pixels between marks that stand side by side
-MIN_WIDTH = 560  # pixels, so that names of rows fit
+STEP = 14  # pixels between marks side by side
+MIN_WIDTH = 560  # pixels, so that the rows' labels fit
 
 
 def draw(table: Table | Curves, results: PolicyResults | CurveResults, file: Path) -> None:
     """Draw a table.
 
     Args:
-        table: What it holds, and the paper's figures.
+        table: Its definition, with the paper's values.
         results: Its results, see `result_files`.
         file: The picture, a PNG file.
     """
@@ -38,14 +38,14 @@ def draw(table: Table | Curves, results: PolicyResults | CurveResults, file: Pat
     else:
         assert isinstance(results, PolicyResults)
         chart = _table(table, results)
-    with atomic_file(file) as beside:
-        chart.save(str(beside), scale_factor=2)
+    with atomic_file(file) as unfinished:
+        chart.save(str(unfinished), scale_factor=2)
 
 
 def _table(table: Table, results: PolicyResults) -> alt.LayerChart:
     """The first metric.
 
-    Along the axis stand the groups, with a mark for each row; or the rows, of a single group.
+    The axis shows the groups, with a mark for each row; a table of one group shows its rows.
     """
     several = len(table.groups) > 1
     ours = list(results.rows if several else _drawn(table, results))
@@ -83,7 +83,7 @@ def _marks(points: list[dict], table: Table, places: list[str], ours: list[str])
 
 
 def _drawn(table: Table, results: PolicyResults) -> dict[str, str]:
-    """The metrics of a single group that share the first one's axis, by what they are called."""
+    """The metrics of a single group that share the first one's axis, by their label."""
     first = table.metrics[0]
     metrics = [metric for metric in table.metrics if AXES.get(metric) == AXES[first]]
     if len(metrics) > 1:
@@ -92,7 +92,7 @@ def _drawn(table: Table, results: PolicyResults) -> dict[str, str]:
 
 
 def _ours(table: Table, results: PolicyResults) -> Iterator[dict]:
-    """Our means: where each stands, and in which series."""
+    """Our means, each with its place on the axis and its series."""
     for row, of_row in results.rows.items():
         for group, of_group in of_row.groups.items():
             if len(table.groups) > 1:
@@ -104,7 +104,7 @@ def _ours(table: Table, results: PolicyResults) -> Iterator[dict]:
 
 
 def _papers(table: Table) -> Iterator[dict]:
-    """The paper's figures, which come without intervals."""
+    """The paper's values, which have no intervals."""
     for series, values in table.paper_values.items():
         for place, value in values.items():
             no_interval = {"mean": value, "low": value, "high": value}
@@ -131,7 +131,7 @@ def _curves(curves: Curves, results: CurveResults) -> alt.FacetChart:
 
 
 def _points(curves: Curves, results: CurveResults) -> Iterator[dict]:
-    """The checkpoints' means: of which recipe and metric each is, and when it came."""
+    """The checkpoints' means, each with its recipe, metric and training time."""
     for recipe, curve in results.rows.items():
         for point in curve.points:
             minutes = point.seconds / 60

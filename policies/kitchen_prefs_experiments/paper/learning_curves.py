@@ -14,11 +14,11 @@ from kitchen_prefs_experiments.paper.result_files import CheckpointResults, Curv
 from kitchen_prefs_experiments.paper.table_types import Curves
 from kitchen_prefs_experiments.recipes import recipe_file
 
-RUNS = Path("outputs")  # where ttp_plus.yaml looks for the run that it goes on from
+RUNS = Path("outputs")  # ttp_plus.yaml expects the run of ttp_quick there
 
-# What a training becomes depends on these of a recipe's settings; the others say how it is saved,
-# logged and loaded.
-DECISIVE = ("dataset", "policy", "optimizer", "scheduler", "batch_size", "steps")
+# The settings of a recipe that change the trained policy; the others concern saving, logging and
+# loading.
+TRAINING_SETTINGS = ("dataset", "policy", "optimizer", "scheduler", "batch_size", "steps")
 
 
 def run_curves(name: str, curves: Curves) -> CurveResults:
@@ -29,11 +29,11 @@ def run_curves(name: str, curves: Curves) -> CurveResults:
 
     Args:
         name: The table's name.
-        curves: Which recipes, and which metrics.
+        curves: The recipes and metrics.
 
     Raises:
         ValueError: If a run is not the recipe's, has no log, or is an unfinished one of another
-            program; or if another run's episodes lie beside it.
+            program; or if its folder holds another run's episodes.
         OSError: If lerobot-train fails; the message names its log.
     """
     for recipe in curves.rows:
@@ -47,13 +47,13 @@ def run_curves(name: str, curves: Curves) -> CurveResults:
 
 
 def _check(recipe: str, run: TrainingRun) -> None:
-    """Raise a ValueError, before hours of work, if the run that is there cannot be used."""
+    """Raise a ValueError, before hours of work, if an existing run cannot be used."""
     if not run.is_finished:
         run.check_settings(recipe)
         return
     settings = yaml.safe_load(recipe_file(recipe).read_text())
-    decisive = {name: settings[name] for name in DECISIVE if name in settings}
-    if differing := list(_differing(decisive, run.config)):
+    expected = {name: settings[name] for name in TRAINING_SETTINGS if name in settings}
+    if differing := list(_differing(expected, run.config)):
         raise ValueError(
             f"The run {run.folder} and the recipe {recipe!r} differ in {' and '.join(differing)}; "
             "delete the run or move it elsewhere."
@@ -62,16 +62,16 @@ def _check(recipe: str, run: TrainingRun) -> None:
 
 
 def _differing(settings: dict, config: dict) -> Iterator[str]:
-    """The names of the settings that have another value in a run's config."""
+    """The names of the settings whose value differs in a run's config."""
     for name, value in settings.items():
         if isinstance(value, dict):
             yield from (f"{name}.{one}" for one in _differing(value, config.get(name) or {}))
-        elif name != "path" and config.get(name) != value:  # lerobot-train keeps no policy.path
+        elif name != "path" and config.get(name) != value:  # lerobot-train saves no policy.path
             yield name
 
 
 def _curve(recipe: str, earlier: int, metrics: tuple[str, ...]) -> CurveRow:
-    """The checkpoints of a recipe, which starts after some seconds of another one."""
+    """Evaluate the checkpoints of a recipe; `earlier` seconds of training came before it."""
     run = TrainingRun(RUNS / recipe)
     if not run.is_finished:
         run.train(recipe, log_freq=1, title=recipe)

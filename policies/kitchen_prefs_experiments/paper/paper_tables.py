@@ -1,6 +1,6 @@
-"""The tables of the paper: what is evaluated on what, and what the paper says.
+"""The tables of the paper: their policies, splits and metrics, and the paper's values.
 
-The paper gives most of its figures as curves; only numbers that stand in its text are repeated.
+The paper gives most of its results as curves; only values from its text are repeated.
 """
 
 from kitchen_prefs.splits import TEST_SPLITS
@@ -63,7 +63,7 @@ TABLES: dict[str, Table | Curves] = {  # in the order of the pages
             "inputs for it, five of which `dishwasher-train-v1` never sets; the rows named `_all` "
             "are trained on `dishwasher-train-all-v1`, which shows all twelve preferences. The "
             "preferences of `many_preferences` have no input. `gnn_paper`, `gnn_paper_all` and "
-            "`gnn_tuned` learned from 128,000 decisions, `gnn_tuned_all` went on from `gnn_tuned` "
+            "`gnn_tuned` learned from 128,000 decisions, `gnn_tuned_all` continued `gnn_tuned` "
             "for 96,000, `ttp_quick` learned from 32,000. LeRobot clips gradients at a norm of 10 "
             "for `gnn_paper`, of which the paper says nothing; its rows are sampled, as the most "
             "probable row has half the PE on `val`. TTP, on the standard track, reads a prompt."
@@ -123,8 +123,8 @@ TABLES: dict[str, Table | Curves] = {  # in the order of the pages
     "final_state": Table(
         title="A prompt of the final arrangement alone",
         paper=(
-            "A preference is more than where everything stands in the end, which earlier work "
-            "encodes: the order is lost. No figures."
+            "A preference is more than the final arrangement, which earlier work encodes: the "
+            "order is lost. No figures."
         ),
         axis="test split",
         rows={
@@ -325,7 +325,7 @@ TABLES: dict[str, Table | Curves] = {  # in the order of the pages
         note=(
             "Each point is a checkpoint on `val`; the best by Score is the one that `select` "
             "takes. The minutes are those of the training's steps, loading included. `ttp_plus` "
-            "goes on from the last checkpoint of `ttp_quick`, so its minutes begin after those."
+            "continues the last checkpoint of `ttp_quick`, so its minutes begin after those."
         ),
     ),
 }

@@ -1,4 +1,4 @@
-"""Policies that are ready to be evaluated: trained where they have to be."""
+"""Prepares policies for evaluation: trains those that need it."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -22,9 +22,9 @@ class PreparedPolicy:
 
     Attributes:
         options: The options of `evaluate` that name it.
-        folder: Keeps its run and its episodes.
-        description: What the results say of it.
-        preference: The label of the preference whose sessions alone count; None for all.
+        folder: The folder of its run and its episodes.
+        description: Its description in the results.
+        preference: The label of the only preference whose sessions count; None for all.
     """
 
     options: list[str]
@@ -39,10 +39,10 @@ class PreparedPolicy:
 
 
 def check(policy: Policy, budget: int) -> None:
-    """Make the data and find the checkpoint, so that what is missing shows before hours of work.
+    """Make the data and find the checkpoint, so that errors come before hours of work.
 
     Raises:
-        ValueError: If a checkpoint is not there, or if the budget is too small.
+        ValueError: If a checkpoint is missing, or if the budget is too small.
         OSError: If the data cannot be written.
     """
     match policy:
@@ -58,15 +58,15 @@ def check(policy: Policy, budget: int) -> None:
 
 
 def prepare(policy: Policy, budget: int, out: Path) -> list[PreparedPolicy]:
-    """Train what a policy needs and is not there yet; a fine-tuning becomes several policies.
+    """Train a policy where that is needed; a fine-tuning becomes several policies.
 
     Args:
         policy: The policy of a table's row.
-        budget: How many decisions each training sees.
-        out: Keeps the runs and the episodes.
+        budget: The number of decisions in each training.
+        out: The folder of the runs and the episodes.
 
     Raises:
-        ValueError: If a checkpoint is not there, or if `out` holds another policy's work.
+        ValueError: If a checkpoint is missing, or if `out` holds runs with other settings.
         OSError: If a training fails; the message names its log.
     """
     trained = out / str(budget)
@@ -92,14 +92,13 @@ def prepare(policy: Policy, budget: int, out: Path) -> list[PreparedPolicy]:
 
 
 def train(training: Training, budget: int, folder: Path, start: Path | None = None) -> TrainingRun:
-    """Train, unless that is done already; a training that was stopped resumes.
+    """Train, unless that is finished; a training that was stopped resumes.
 
     Args:
         training: The recipe, the data and the overridden settings.
-        budget: How many decisions it sees.
-        folder: Keeps the run.
-        start: The checkpoint whose weights it begins with; if not given, it begins with random
-            ones.
+        budget: The number of decisions.
+        folder: The folder of the run.
+        start: The checkpoint with the initial weights; if not given, they are random.
 
     Raises:
         ValueError: If the folder holds a run with other settings.
@@ -107,7 +106,7 @@ def train(training: Training, budget: int, folder: Path, start: Path | None = No
     """
     run = TrainingRun(folder / "train")
     options = [*training.options(budget), *([f"--policy.path={start}"] if start else [])]
-    # Every step is logged, so that even the shortest run says how long its steps take.
+    # Every step is logged, so that even the shortest run has durations of steps.
     run.train(training.recipe, options, log_freq=1, title=training.name)
     return run
 

@@ -15,10 +15,10 @@ SPLITS = ("seen", "unseen_preferences", "unseen_counts", "mean")
 
 
 def replace_table(readme: str, scores: Sequence[dict]) -> str:
-    """The README with its table written anew.
+    """Replace the table in the README.
 
     Args:
-        readme: Holds the lines BEGIN and END, between which the table stands.
+        readme: Its text, with the table between the lines BEGIN and END.
         scores: The entries of scores.json.
 
     Raises:
@@ -27,7 +27,7 @@ def replace_table(readme: str, scores: Sequence[dict]) -> str:
     before, begin, rest = readme.partition(BEGIN)
     _, end, after = rest.partition(END)
     if not begin or not end:
-        raise ValueError(f"The README has no lines {BEGIN} and {END}, between which its table is.")
+        raise ValueError(f"The README has no lines {BEGIN} and {END}, which enclose its table.")
     return f"{before}{BEGIN}\n{readme_table(scores)}\n{END}{after}"
 
 

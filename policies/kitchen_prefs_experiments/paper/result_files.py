@@ -1,4 +1,4 @@
-"""The results of a table, docs/results/TABLE.json: what was run, and the metrics it reached."""
+"""The results of a table, docs/results/TABLE.json: the policies and their metrics."""
 
 from importlib.metadata import version
 from pathlib import Path
@@ -36,7 +36,7 @@ class PolicyDescription(_Results):
         checkpoint: The name of a committed checkpoint.
         rule: The name of a rule.
         options: The options of lerobot-train that overrode the recipe.
-        seconds: How long the steps of the training took.
+        seconds: The duration of the training's steps (s).
     """
 
     checkpoint: str | None = None
@@ -49,7 +49,7 @@ class PolicyRow(PolicyDescription):
     """A policy and its metrics.
 
     Attributes:
-        policies: The policies of a row that stands for several; it describes no other.
+        policies: The policies of a row of several, which has no description of its own.
         groups: The metrics by split or by number of dishes per rack.
     """
 
@@ -62,7 +62,7 @@ class CheckpointResults(_Results):
 
     Attributes:
         step: The training step at which the checkpoint was saved.
-        seconds: How long the training had taken by then.
+        seconds: The training time until then (s).
         metrics: Each metric on val.
     """
 
@@ -76,7 +76,7 @@ class CurveRow(_Results):
 
     Attributes:
         steps: The number of training steps.
-        seconds: How long they took.
+        seconds: Their duration (s).
         best: The step of the best checkpoint by Score on val.
         points: The checkpoints, the earliest first.
     """
@@ -95,7 +95,7 @@ class _TableResults[Row: PolicyRow | CurveRow](_Results):
         data_version: The version of the sessions and demonstrations.
         package_version: The version of the package that made them.
         recipes: The recipes that were trained, if any.
-        budget: How many decisions each training that started from random weights saw.
+        budget: The number of decisions in each training from random weights.
         rows: The results by the rows' labels.
     """
 
@@ -114,7 +114,7 @@ class _TableResults[Row: PolicyRow | CurveRow](_Results):
         recipes: list[str] | None = None,
         budget: int | None = None,
     ) -> Self:
-        """Results that the installed package made."""
+        """Results of the installed package."""
         return cls(
             table=table,
             data_version=DATA_VERSION,

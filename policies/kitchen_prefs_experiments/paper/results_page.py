@@ -1,8 +1,8 @@
 """The pages of results: an overview, and a page for each table that has been run.
 
-Everything comes from the folder of results: figures from TABLE.json, prose from prose/TABLE.md and,
-for the overview, prose/index.md. A row whose figures an earlier page shows already is linked, and
-rows or columns in which all figures are equal become one sentence.
+Everything comes from the folder of results: numbers from TABLE.json, prose from prose/TABLE.md and,
+for the overview, prose/index.md. A row that an earlier page shows is linked, and rows in which all
+numbers are equal become one sentence.
 """
 
 from collections.abc import Iterator, Mapping
@@ -162,7 +162,7 @@ def _by_recipe(curves: Curves, rows: dict[str, CurveRow]) -> str:
 
 
 def _how_made(name: str, results: PolicyResults | CurveResults) -> str:
-    """The command that made the results, and under which conditions."""
+    """The command that made the results, and its conditions."""
     versions = f"data version {results.data_version}, package {results.package_version}"
     if not isinstance(results, PolicyResults) or results.budget is None:
         return f"`kitchen-prefs reproduce {name}` made the figures; {versions}."
@@ -176,7 +176,7 @@ def _how_made(name: str, results: PolicyResults | CurveResults) -> str:
 
 
 def _seconds(rows: dict[str, PolicyRow]) -> Iterator[int]:
-    """How long each training took; a row may stand for several."""
+    """The duration of each training; a row may have several."""
     for row in rows.values():
         yield from (of.seconds for of in row.policies or [row] if of.seconds is not None)
 

@@ -1,4 +1,4 @@
-"""The metrics of a table's groups, from the episodes that evaluations wrote."""
+"""The metrics of a table's groups, from the episode files of the evaluations."""
 
 from collections.abc import Iterator, Sequence
 from itertools import chain
@@ -18,15 +18,15 @@ from kitchen_prefs_experiments.paper.prepared_policies import PreparedPolicy
 from kitchen_prefs_experiments.paper.result_files import GroupResults
 from kitchen_prefs_experiments.paper.table_types import Table
 
-PLACES = ("in top", "in bottom", "in sink")  # what a place decision chooses among
+PLACES = ("in top", "in bottom", "in sink")  # the kinds of place decisions
 
 
 def measure_groups(table: Table, policies: Sequence[PreparedPolicy]) -> dict[str, GroupResults]:
     """Each group's number of episodes and its metrics.
 
     Args:
-        table: Names the groups.
-        policies: The evaluated policies of a row, each with the sessions that count for it.
+        table: The table with the groups.
+        policies: The evaluated policies of a row.
 
     Raises:
         ValueError: If a line is not an episode.
@@ -66,13 +66,13 @@ def _episodes(policies: Sequence[PreparedPolicy], name: str) -> list[Episode]:
 def _split_metrics(
     table: Table, split: str, episodes: Sequence[Episode], policies: Sequence[PreparedPolicy]
 ) -> Iterator[tuple[str, Interval]]:
-    """All metrics of a split that a table asks for; `Evaluator` names the files."""
+    """All metrics of a split that a table needs; `Evaluator` names the files."""
     yield from _rollout_metrics(episodes)
     if split in table.prompt_use:
         swapped = _episodes(policies, f"{split}-other-prompt")
         yield "PE, other prompt", summarise(swapped, packing_efficiency)
         yield "Prompt use", prompt_use(episodes, swapped)
-    if table.asks_for_accuracy:
+    if table.needs_expert_states:
         on_expert_states = _episodes(policies, f"{split}-expert-states")
         yield "Category accuracy", summarise(on_expert_states, category_accuracy)
         yield "Pick accuracy", summarise(on_expert_states, pick_accuracy)

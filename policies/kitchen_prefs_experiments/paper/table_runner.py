@@ -15,17 +15,17 @@ from kitchen_prefs_experiments.paper.table_types import Table
 
 
 def run_table(name: str, table: Table, budget: int, jobs: int, out: Path) -> PolicyResults:
-    """Train and evaluate what a table needs and is not there yet.
+    """Train and evaluate a table's policies; finished work is reused.
 
     Args:
         name: The table's name.
         table: Its policies, splits and metrics.
-        budget: How many decisions each training sees.
-        jobs: How many policies are trained or evaluated at once, each in a thread.
-        out: Keeps the runs and the episodes.
+        budget: The number of decisions in each training.
+        jobs: The number of policies trained or evaluated at once, each in a thread.
+        out: The folder of the runs and the episodes.
 
     Raises:
-        ValueError: If a checkpoint is not there, or if `out` holds another policy's work.
+        ValueError: If a checkpoint is missing, or if `out` holds runs with other settings.
         OSError: If a training or an evaluation fails; the message names its log.
     """
     for policy in table.policies:
@@ -55,13 +55,13 @@ def _row(policy: Policy, table: Table, budget: int, out: Path) -> PolicyRow:
 
 
 def _evaluate(policy: PreparedPolicy, table: Table, name: str) -> None:
-    """Roll out the episodes that are not there yet.
+    """Roll out the missing episodes.
 
-    Tables share policies: a second thread waits until the first is done with one.
+    Tables share policies: a second thread waits until the first has finished one.
     """
     policy.folder.mkdir(parents=True, exist_ok=True)
     common = ["evaluate", *policy.options, f"--out={policy.episodes}"]
-    if table.asks_for_accuracy:
+    if table.needs_expert_states:
         common.append("--category-accuracy")
     others = [split for split in table.splits if split not in table.prompt_use]
     for splits, options in ((table.prompt_use, ["--prompt-use"]), (others, [])):

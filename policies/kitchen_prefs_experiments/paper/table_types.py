@@ -1,4 +1,4 @@
-"""What a table of results is: who is evaluated on what, and what the paper says."""
+"""Definitions of the tables: policies, splits, metrics and the paper's values."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from kitchen_prefs.splits import get_split
 from kitchen_prefs_experiments.paper.evaluated_policies import FineTuning, Policy, Training
 
-# Asked in the expert's states.
+# Metrics that are measured on the expert's states.
 ACCURACIES = ("Category accuracy", "Pick accuracy")
 
 
@@ -19,16 +19,16 @@ class Table:
 
     Attributes:
         title: Its heading.
-        paper: What the paper says.
-        axis: What stands along the picture's horizontal axis.
+        paper: The paper's result.
+        axis: The title of the figure's horizontal axis.
         rows: The policies, each with its label.
         splits: The splits they are evaluated on.
-        metrics: The metrics that are shown; the first is that of the picture and of the paper.
-        paper_values: The paper's figures: what they are called -> group -> value or, in a table of
-            one group, -> row -> value.
+        metrics: The metrics that are shown; the first is the one in the figure and in the paper.
+        paper_values: The paper's values: label -> group -> value or, in a table of one group,
+            label -> row -> value.
         prompt_use: The splits that are also rolled out with another preference's prompt.
         by_count: Whether there is a group for each number of dishes per rack.
-        note: What is done otherwise than in the paper.
+        note: Differences from the paper.
     """
 
     title: str
@@ -60,33 +60,32 @@ class Table:
 
     @property
     def trains(self) -> bool:
-        """Whether something has to be trained for it."""
+        """Whether any of its policies has to be trained."""
         return bool(self.recipes)
 
     @property
     def recipes(self) -> list[str]:
-        """The recipes of what has to be trained for it, each once."""
+        """The recipes of its trainings, each once."""
         started = [of.start if isinstance(of, FineTuning) else of for of in self.policies]
         return list(dict.fromkeys(of.recipe for of in started if isinstance(of, Training)))
 
     @property
-    def asks_for_accuracy(self) -> bool:
-        """Whether the policies are asked in the expert's states, too."""
+    def needs_expert_states(self) -> bool:
+        """Whether the policies are evaluated on the expert's states, too."""
         return not set(ACCURACIES).isdisjoint(self.metrics)
 
 
 @dataclass(frozen=True)
 class Curves:
-    """Learning curves: how good the checkpoints of recipes are on val, against time.
+    """Learning curves: the metrics of recipes' checkpoints on val, against training time.
 
     Attributes:
         title: Its heading.
-        paper: What the paper says.
-        rows: The recipes, each with the one from whose last checkpoint it goes on, if there is one;
-            that one stands before it.
-        metrics: The metrics that are kept.
-        drawn: Those that are drawn and shown.
-        note: What is done otherwise than in the paper.
+        paper: The paper's result.
+        rows: The recipes, each with the earlier recipe whose last checkpoint it continues, if any.
+        metrics: The metrics in the results file.
+        drawn: The metrics in the figure and on the page.
+        note: Differences from the paper.
     """
 
     title: str

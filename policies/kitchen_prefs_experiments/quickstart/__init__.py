@@ -2,5 +2,5 @@
 
 report            the table and the learning curve
 episode_pictures  a start, an end and an animated episode
-commands          the command that does all of it
+commands          the command `kitchen-prefs quickstart`
 """

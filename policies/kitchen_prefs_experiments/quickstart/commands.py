@@ -30,7 +30,7 @@ def quickstart(
 ) -> None:
     """Make the data, train TTP for some minutes, score it beside simple rules, and draw pictures.
 
-    What is finished is kept: a command that was stopped goes on with the next part.
+    Finished parts are kept: a command that was stopped resumes with the next part.
 
     For example:
     kitchen-prefs quickstart
@@ -61,9 +61,9 @@ def quickstart(
 
 
 def _train(run: "TrainingRun") -> None:
-    """Train the recipe, unless that is done; a run that was stopped starts anew.
+    """Train the recipe, unless that is finished; a run that was stopped starts from the beginning.
 
-    If it resumed, its log would hold some steps twice, and the learning curve with it.
+    If it resumed, its log and thus the learning curve would hold some steps twice.
     """
     if not run.is_finished:
         run.delete()
@@ -71,7 +71,7 @@ def _train(run: "TrainingRun") -> None:
 
 
 def _draw(episode: "Episode", out: Path) -> None:
-    """Pictures need OpenGL; everything else does not."""
+    """Draw the pictures, if OpenGL is available; nothing else needs it."""
     try:
         from kitchen_prefs_experiments.quickstart.episode_pictures import draw_episode
 
@@ -81,7 +81,7 @@ def _draw(episode: "Episode", out: Path) -> None:
 
 
 def _evaluate(checkpoint: Path, out: Path) -> tuple[dict[str, dict[str, "Summary"]], "Episode"]:
-    """Every policy on every split; and the episode of the pictures."""
+    """Evaluate every policy on every split; also returns the episode of the pictures."""
     from kitchen_prefs.evaluation.evaluator import Evaluator
     from kitchen_prefs.evaluation.policy_loading import load_policy
 

@@ -21,8 +21,8 @@ def draw_episode(episode: Episode, folder: Path) -> None:
     """Draw start.png, end.png (with the racks pulled out, to show the load) and episode.gif.
 
     Args:
-        episode: Whose actions are replayed.
-        folder: Where the files go.
+        episode: The episode whose actions are replayed.
+        folder: The output folder.
     """
     environment = DishwasherLoading(episode.split)
     environment.reset(options={"session": episode.session, "salt": episode.salt})

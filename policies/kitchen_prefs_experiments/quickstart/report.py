@@ -18,7 +18,7 @@ def write_table(summaries: dict[str, dict[str, Summary]], folder: Path) -> str:
 
     Args:
         summaries: policy -> split -> summary.
-        folder: Where the files go.
+        folder: The output folder.
 
     Returns:
         The table as Markdown; a cell is the mean and its 95 % interval.
@@ -60,7 +60,7 @@ def write_learning_curve(entries: list[LogEntry], log_freq: int, file: Path) -> 
 
 
 def _curves(steps: list[int], curves: dict[str, list[float]], title: str) -> alt.Chart:
-    """One panel: curves by the decisions that they are about."""
+    """One panel, with a curve for each kind of decision."""
     points = [
         {"step": step, "value": value, "decisions": decisions}
         for decisions, values in curves.items()

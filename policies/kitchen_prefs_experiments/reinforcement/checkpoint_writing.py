@@ -3,7 +3,7 @@
 RUN/checkpoints/016000/
     pretrained_model/   the policy with its processors, as `kitchen-prefs evaluate` takes it
     training_state/     the optimiser, the random numbers, the interactions so far, the value head
-RUN/checkpoints/last    names the last one
+RUN/checkpoints/last    a link to the last one
 """
 
 from pathlib import Path
@@ -28,13 +28,13 @@ VALUE_HEAD = "value_head.safetensors"
 
 
 def last_checkpoint(run: Path) -> Path | None:
-    """The last checkpoint of a run, if there is any."""
+    """The last checkpoint of a run; None if it has none."""
     folder = run / "checkpoints" / LAST_CHECKPOINT_LINK
     return folder.resolve() if folder.exists() else None
 
 
 def interactions_of(checkpoint: Path) -> int:
-    """How many interactions led to a checkpoint."""
+    """The number of interactions before a checkpoint."""
     return load_training_step(checkpoint / TRAINING_STATE_DIR)
 
 
@@ -44,20 +44,22 @@ def pretrained_model(checkpoint: Path) -> Path:
 
 
 def save_checkpoint(run: Path, learner: PPO | MaskablePPO, policy: PreTrainedPolicy) -> None:
-    """Save a checkpoint, whole or not at all, and let `last` name it."""
+    """Save a checkpoint atomically and link `last` to it."""
     interactions = learner.num_timesteps
     folder = get_step_checkpoint_dir(run, interactions, interactions)
-    with atomic_folder(folder) as beside:
-        policy.save_pretrained(pretrained_model(beside))
+    with atomic_folder(folder) as unfinished:
+        policy.save_pretrained(pretrained_model(unfinished))
         for processor in make_pre_post_processors(policy.config):
-            processor.save_pretrained(pretrained_model(beside))
-        save_training_state(beside, interactions, learner.policy.optimizer)
-        save_file(learner.policy.value_net.state_dict(), beside / TRAINING_STATE_DIR / VALUE_HEAD)
+            processor.save_pretrained(pretrained_model(unfinished))
+        save_training_state(unfinished, interactions, learner.policy.optimizer)
+        save_file(
+            learner.policy.value_net.state_dict(), unfinished / TRAINING_STATE_DIR / VALUE_HEAD
+        )
     update_last_checkpoint(folder)
 
 
 def restore(checkpoint: Path, learner: PPO | MaskablePPO) -> None:
-    """Let a learner whose policy was loaded from a checkpoint go on from there."""
+    """Restore the training state of a learner whose policy was loaded from a checkpoint."""
     state = checkpoint / TRAINING_STATE_DIR
     learner.policy.value_net.load_state_dict(load_file(state / VALUE_HEAD))
     load_optimizer_state(learner.policy.optimizer, state)

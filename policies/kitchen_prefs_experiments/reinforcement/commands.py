@@ -20,19 +20,20 @@ def reinforce(
     context: typer.Context,
     out: Annotated[Path, typer.Option(help="The folder of checkpoints and logs.")],
     interactions: Annotated[
-        int, typer.Option(help="How many decisions in all.", min=1)
+        int, typer.Option(help="The total number of decisions.", min=1)
     ] = 32_000,  # the paper's budget
     recipe: Annotated[
         str, typer.Option(help="A recipe of reinforcement learning, by name.")
     ] = "gnn_rl",
     mask: Annotated[
-        bool, typer.Option("--mask", help="Mask what the kitchen would refuse: an oracle.")
+        bool,
+        typer.Option("--mask", help="Mask decisions that would be refused (an oracle)."),
     ] = False,
 ) -> None:
     """Train a policy by PPO from the paper's rewards, on the sessions of train (open track).
 
-    A command that was stopped resumes; so does a finished one that is given more --interactions.
-    The checkpoints are LeRobot's: evaluate and select take them, tensorboard reads OUT/tensorboard.
+    A command that was stopped resumes; so does a finished one with more --interactions.
+    The checkpoints are in LeRobot's format, for evaluate and select; the logs in OUT/tensorboard.
     Any other --SETTING=VALUE overrides a setting of the recipe.
 
     For example:

@@ -1,4 +1,4 @@
-"""PPO around a LeRobot policy: its scores are the logits, and a value head stands beside them.
+"""PPO around a LeRobot policy: its scores are the logits, and a value head is added.
 
 observation - policy.score_rows - scores (B, N) - the distribution over rows
 - summary (B, d) - linear - the value
@@ -47,37 +47,39 @@ class RowScores(Protocol):
 
 
 class RowScorer(Protocol):
-    """A policy that can learn from rewards."""
+    """A policy that can be trained from rewards."""
 
     @property
     def summary_size(self) -> int:
         """The size d of a summary."""
 
     def score_rows(self, batch: dict[str, Tensor], failed: Tensor) -> RowScores:
-        """Score the rows of sets, none of which has failed before."""
+        """Score the rows of sets; `failed` marks failed choices, (B, N) bool."""
 
 
 class RowScoresExtractor(BaseFeaturesExtractor):
     """The policy's scores and summaries, side by side, (B, N + d)."""
 
     def __init__(self, observation_space: spaces.Dict, policy: Any) -> None:
-        """Take the policy, a `RowScorer`, as it is: what learns is what is saved."""
+        """Wrap the policy, a `RowScorer`: the trained module is the one that is saved."""
         super().__init__(observation_space, CAPACITY + policy.summary_size)
         self.policy = policy
 
     def forward(self, observations: dict[str, Tensor]) -> Tensor:
         """Score the observations of B environments."""
         batch = {FEATURES_MAP[key]: value for key, value in observations.items()}
-        nothing = torch.zeros_like(observations["instances"][..., 0], dtype=torch.bool)  # (B, N)
-        row_scores = self.policy.score_rows(batch, nothing)
+        none_failed = torch.zeros_like(
+            observations["instances"][..., 0], dtype=torch.bool
+        )  # (B, N)
+        row_scores = self.policy.score_rows(batch, none_failed)
         return torch.cat([row_scores.scores, row_scores.summary], dim=1)
 
 
 class SplitFeatures(nn.Module):
-    """Takes `RowScoresExtractor` apart again: where stable-baselines3 has two small networks."""
+    """Splits the output of `RowScoresExtractor`; it replaces two networks of SB3."""
 
     def __init__(self, features_dim: int) -> None:
-        """Know the sizes of the two parts."""
+        """Set the sizes of the two parts."""
         super().__init__()
         self.latent_dim_pi = CAPACITY
         self.latent_dim_vf = features_dim - CAPACITY
@@ -96,7 +98,7 @@ class SplitFeatures(nn.Module):
 
 
 class _ScoresAreLogits:
-    """What both of stable-baselines3's actor-critics do differently here."""
+    """Changes to both of stable-baselines3's actor-critics: scores are the logits."""
 
     def _build_mlp_extractor(self: Any) -> None:
         self.mlp_extractor = SplitFeatures(self.features_dim)
@@ -110,11 +112,11 @@ class _ScoresAreLogits:
 
 
 class RowPolicy(_ScoresAreLogits, ActorCriticPolicy):  # type: ignore[misc]
-    """Chooses among all instances that are seen."""
+    """Chooses among all rows of the observation."""
 
 
 class MaskedRowPolicy(_ScoresAreLogits, MaskableActorCriticPolicy):  # type: ignore[misc]
-    """Chooses among those that the kitchen would carry out."""
+    """Chooses among the rows that the kitchen would carry out."""
 
 
 def make_learner(
@@ -124,7 +126,7 @@ def make_learner(
 
     Args:
         args: PPO's constants.
-        policy: The policy that learns.
+        policy: The policy that is trained.
         environments: Its environments.
         seed: The seed of the sessions and choices.
         masked: Whether infeasible decisions are masked.
@@ -136,7 +138,7 @@ def make_learner(
         "policy_kwargs": {
             "features_extractor_class": RowScoresExtractor,
             "features_extractor_kwargs": {"policy": policy},
-            "ortho_init": False,  # the network begins as it does in imitation
+            "ortho_init": False,  # the same initial weights as in imitation
             # stable-baselines3's epsilon for PPO, and the recipe's weight decay
             "optimizer_kwargs": {"eps": 1e-5, "weight_decay": args.weight_decay},
         },

@@ -11,18 +11,21 @@ from kitchen_prefs.envs.episode_simulator import LIMIT_FACTOR
 from kitchen_prefs.metrics import packing_efficiency
 from kitchen_prefs.simulation.sessions import expert_trajectory
 
-# The sessions that demonstrations are of, so that imitation and reinforcement see the same users
-# and dishes.
+# The sessions of the demonstrations, so that imitation and reinforcement learning share users and
+# dishes.
 SPLIT, SALT = "train", 0
-SHOWN = ("instances", "preference")  # not the prompt: its megabytes would fill the memory of PPO
-NOT_CHOOSABLE = "This decision does not choose among such rows."
+SHOWN = (
+    "instances",
+    "preference",
+)  # not the prompt: it would fill PPO's rollout buffer
+NOT_CHOOSABLE = "This row cannot be chosen in this decision."
 
 
 class RowActions(gymnasium.Wrapper):
     """`DishwasherLoading` on the privileged track, whose actions are rows of the instance set.
 
-    A row that the decision may not choose, padding included, changes nothing, counts as a decision
-    and is refused, as what the kitchen refuses. At an episode's end `info["PE"]` is its packing
+    A row that cannot be chosen, padding included, is refused: it counts as a decision and changes
+    nothing. At an episode's end `info["PE"]` is its packing
     efficiency.
     """
 
@@ -38,7 +41,7 @@ class RowActions(gymnasium.Wrapper):
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
-        """Start a published session, any one without a seed; see `DishwasherLoading.reset`."""
+        """Start a published session; see `DishwasherLoading.reset`."""
         observation, info = self.env.reset(seed=seed, options={"salt": SALT, **(options or {})})
         self._seen = {key: observation[key] for key in SHOWN}
         self._left = LIMIT_FACTOR * len(expert_trajectory(self.env.session).decisions)
@@ -58,7 +61,7 @@ class RowActions(gymnasium.Wrapper):
         return self._seen, reward, terminated, truncated, info
 
     def action_masks(self) -> np.ndarray:
-        """The rows that the kitchen would carry out, (N,) bool; sb3-contrib asks for them.
+        """The rows that the kitchen would carry out, (N,) bool; sb3-contrib calls this.
 
         An oracle: no evaluated policy observes which dishes block which placements.
         """

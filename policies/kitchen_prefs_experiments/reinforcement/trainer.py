@@ -1,4 +1,4 @@
-"""Trains a policy by PPO, and resumes a training that was stopped."""
+"""Trains a policy by PPO; a run that was stopped resumes."""
 
 import json
 from dataclasses import dataclass
@@ -39,12 +39,12 @@ SETTINGS = "settings.json"
 
 @dataclass(frozen=True)
 class Pace:
-    """How fast a training was.
+    """The speed of a training.
 
     Attributes:
         interactions: The number of decisions.
-        seconds: How long they took, learning included.
-        rollout_seconds: How long the rollouts alone took.
+        seconds: Their duration, learning included.
+        rollout_seconds: The duration of the rollouts alone.
     """
 
     interactions: int
@@ -62,11 +62,11 @@ def reinforce(args: Args, interactions: int, masked: bool, run: Path) -> Pace:
         run: The output folder.
 
     Returns:
-        How fast it was; it has no interactions if the run had as many already.
+        The speed; it has no interactions if the run had as many already.
 
     Raises:
-        ValueError: If the folder holds a run with other settings, if the policy cannot learn from
-            rewards, or if the interactions are not a multiple of an update's.
+        ValueError: If the folder holds a run with other settings, if the policy cannot be trained
+            from rewards, or if the interactions are not a multiple of an update's.
         OSError: If the folder cannot be written.
     """
     settings = json.loads(json.dumps({"masked": masked, **draccus.encode(args)}))
@@ -113,22 +113,22 @@ def make_policy(args: Args) -> Any:
 
 
 def _settings_of(run: Path) -> dict | None:
-    """The settings that a run was started with; None if it is not one of `reinforce`."""
+    """The settings that a run was started with; None if `reinforce` did not start it."""
     file = run / SETTINGS
     return json.loads(file.read_text()) if file.exists() else None
 
 
 def _begin(args: Args, masked: bool, checkpoint: Path | None) -> tuple[PPO | MaskablePPO, Any]:
-    """The learner and its policy, new or as a checkpoint left them."""
+    """The learner and its policy, new or restored from a checkpoint."""
     done = interactions_of(checkpoint) if checkpoint else 0
     set_seed(args.seed)
     policy = _saved_policy(checkpoint) if checkpoint else make_policy(args)
-    # They run in this process: a decision takes a tenth of a millisecond, asking another process
-    # as long.
+    # In this process: a decision takes a tenth of a millisecond, and so would communication with
+    # another process.
     environments = DummyVecEnv(
         [lambda: Monitor(RowActions(), info_keywords=("PE",))] * args.num_envs
     )
-    # Another seed than at the start: a run that resumes meets other sessions first.
+    # Another seed than at the start, so that a run that resumes continues with other sessions.
     learner = make_learner(args, policy, environments, args.seed + done, masked)
     if checkpoint:
         restore(checkpoint, learner)
@@ -143,10 +143,10 @@ def _saved_policy(checkpoint: Path) -> Any:
 
 
 class Watch(BaseCallback):
-    """A progress bar, how long rollouts take, and packing efficiency in the log."""
+    """Shows a progress bar, times the rollouts and logs packing efficiency."""
 
     def __init__(self, interactions: int) -> None:
-        """Know how many interactions there will be."""
+        """Set the total number of interactions."""
         super().__init__()
         self.rollout_seconds = 0.0
         self._interactions = interactions

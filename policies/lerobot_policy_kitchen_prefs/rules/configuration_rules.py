@@ -22,7 +22,7 @@ NEEDS = {
 @PreTrainedConfig.register_subclass("rules")
 @dataclass
 class RulesConfig(PreTrainedConfig):
-    """Which rule decides.
+    """The configuration of the rules.
 
     Attributes:
         rule: "random" chooses any row; "majority" follows the most frequent training preference;
@@ -38,7 +38,7 @@ class RulesConfig(PreTrainedConfig):
     rule: str = "symbolic"
     device: str | None = "cpu"
     push_to_hub: bool = False
-    # LeRobot's default processors ask for it; a rule reads poses as they are.
+    # Required by LeRobot's default processors; a rule reads poses unnormalised.
     normalization_mapping: dict[str, NormalizationMode] = field(
         default_factory=lambda: dict.fromkeys(
             ("STATE", "ENV", "ACTION"), NormalizationMode.IDENTITY
@@ -85,7 +85,7 @@ class RulesConfig(PreTrainedConfig):
         return None
 
     def get_optimizer_preset(self) -> OptimizerConfig:
-        """A rule has nothing to optimise; LeRobot asks all the same."""
+        """Required by LeRobot; a rule has nothing to optimise."""
         return AdamWConfig()
 
     def get_scheduler_preset(self) -> None:

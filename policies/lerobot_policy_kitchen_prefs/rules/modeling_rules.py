@@ -30,7 +30,7 @@ Inference = Callable[[ObservedView], Preference]  # the preference to act by now
 
 
 class RulesPolicy(PreTrainedPolicy):
-    """Decides by a rule; nothing is learned."""
+    """Chooses by a rule, without learning."""
 
     config_class = RulesConfig
     name = "rules"
@@ -42,17 +42,17 @@ class RulesPolicy(PreTrainedPolicy):
         self.reset()
 
     def reset(self) -> None:
-        """Forget the episodes."""
+        """Clear the state: a new batch of episodes begins."""
         self._inferences: list[Inference] = []
         self._memories: list[Memory] = []
 
     @torch.no_grad()
     def select_action(self, batch: dict[str, Tensor], **_: Any) -> Tensor:
-        """Decide once in every environment of the batch.
+        """Choose an action in every environment of the batch.
 
         Args:
             batch: The observation; `observation.instances` is (B, N, 13).
-            **_: Other arguments of LeRobot's.
+            **_: Further arguments of LeRobot.
 
         Returns:
             The chosen rows' poses, (B, 7).
@@ -105,7 +105,7 @@ def _fixed(preference: Preference) -> Inference:
 
 
 def _majority(batch: dict[str, Tensor], size: int) -> list[Inference]:
-    """All seven are equally common in `train`; the first stands for them."""
+    """All seven are equally frequent in `train`; the first one is taken."""
     return [_fixed(SEEN[0])] * size
 
 

@@ -12,7 +12,7 @@ from lerobot_policy_kitchen_prefs.common.dish_locations import in_rack, on_count
 
 
 class Memory:
-    """Which placements were blocked when a rack was last visible."""
+    """The placements that were blocked when each rack was last visible."""
 
     def __init__(self) -> None:
         self.blocked: dict[str, np.ndarray] = {}

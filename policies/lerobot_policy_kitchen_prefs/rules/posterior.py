@@ -1,9 +1,9 @@
 """The exact posterior over all 2 x 7! preferences, given a prompt, a session's dishes, or both.
 
 The prior is uniform. A preference explains a prompt or it does not, because the expert is
-deterministic. The dishes of a session tell something even without a prompt: as many of them belong
-to the top rack as to the bottom rack (see `kitchen_prefs.simulation.sessions`), so how often each
-category occurs says which ones are likely to share a rack.
+deterministic. The dishes of a session are informative even without a prompt: as many of them belong
+to the top rack as to the bottom rack (see `kitchen_prefs.simulation.sessions`), so the frequencies
+of the categories show which ones are likely to share a rack.
 """
 
 from functools import lru_cache
@@ -18,17 +18,17 @@ from lerobot_policy_kitchen_prefs.rules.observed_view import Memory, ObservedVie
 from lerobot_policy_kitchen_prefs.rules.preference_inference import decisions_of
 from lerobot_policy_kitchen_prefs.rules.preference_space import expert_choices, preference_space
 
-# How many dishes a rack may be meant to hold; all are taken to be equally likely, as an observation
-# does not contain the number.
+# The possible numbers of dishes per rack; they are assumed to be equally likely, because an
+# observation does not contain the number.
 COUNTS = sorted(TRAINING_COUNTS + OTHER_COUNTS)
 TOP, BOTTOM = RACKS.index("top"), RACKS.index("bottom")
 
 
 class PosteriorInference:
-    """Infers the preference of one episode anew before each decision.
+    """Infers the preference of one episode before each decision.
 
     Args:
-        prior: What is known before the session begins, (P,), up to a factor.
+        prior: The prior before the session, (P,), up to a factor.
     """
 
     def __init__(self, prior: np.ndarray) -> None:
@@ -41,16 +41,16 @@ class PosteriorInference:
         """The preference to act by.
 
         Args:
-            view: What is seen before the next decision.
+            view: The view before the next decision.
         """
         dishes = self._dishes_so_far(view)
         likelihood = session_likelihood(tuple(dishes.tolist()), self._present)
         posterior = self._prior * likelihood[preference_space().partition]  # (P,)
-        # The prompt of another preference may contradict the session; then the prompt prevails.
+        # The prompt of another preference may contradict the session; then only the prompt counts.
         return best_preference(posterior if posterior.any() else self._prior, dishes)
 
     def _dishes_so_far(self, view: ObservedView) -> np.ndarray:
-        """How many dishes of each category have come, (7,): those that wait and those put away."""
+        """The dishes of each category that have arrived, (7,): those waiting and those put away."""
         if self._held is not None and view.held is None:
             self._stowed[CATEGORIES.index(self._held)] += 1
         self._held = view.held
@@ -67,7 +67,7 @@ def uniform_prior() -> np.ndarray:
 def prompt_likelihood(prompt: np.ndarray) -> np.ndarray:
     """1 for each preference under which the expert acts as in a prompt, else 0.
 
-    If perception errs so that none explains every decision, those that explain most do.
+    If noisy observations leave none that explains every decision, those that explain most count.
 
     Args:
         prompt: (R, 14), padded; of several demonstrations, one below the other, all count.
@@ -85,14 +85,14 @@ def prompt_likelihood(prompt: np.ndarray) -> np.ndarray:
 
 
 def best_preference(posterior: np.ndarray, dishes: np.ndarray) -> Preference:
-    """The preference to act by when several are possible.
+    """The preference to act by under a posterior.
 
     The racks of the categories are those of the best expected packing efficiency, the first rack is
     the more probable one, and each rack is loaded in the order of the expected ranks.
 
     Args:
         posterior: (P,), up to a factor.
-        dishes: How many dishes of each category have come, (7,).
+        dishes: The number of dishes of each category that have arrived, (7,).
     """
     space = preference_space()
     posterior = posterior / posterior.sum()
@@ -108,7 +108,7 @@ def best_preference(posterior: np.ndarray, dishes: np.ndarray) -> Preference:
 
 
 def _packing(dishes: np.ndarray) -> np.ndarray:
-    """PE of loading by one partition where another one is wanted, (35, 35)."""
+    """PE of loading by one partition under another one, (35, 35)."""
     packed = []
     for rack in (TOP, BOTTOM):
         loaded = (preference_space().partitions == rack).astype(float)  # (35, 7)
@@ -120,11 +120,11 @@ def _packing(dishes: np.ndarray) -> np.ndarray:
 
 @lru_cache(maxsize=4096)
 def session_likelihood(dishes: tuple[int, ...], present: int) -> np.ndarray:
-    """How likely the first dishes of a session are under each partition of the categories.
+    """The likelihood of a session's first dishes under each partition of the categories.
 
     Args:
-        dishes: How many dishes of each category have come, (7,).
-        present: How many stood on the counter at the start.
+        dishes: The number of dishes of each category that have arrived, (7,).
+        present: The number of dishes on the counter at the start.
 
     Returns:
         (35,) float, up to a factor.
@@ -137,45 +137,46 @@ def _of_partition(dishes: np.ndarray, racks: np.ndarray, present: int) -> float:
     """The likelihood if each category belongs to a given rack, (7,)."""
     top, bottom = dishes[racks == TOP].tolist(), dishes[racks == BOTTOM].tolist()
     return sum(
-        _chance_of_start(present, count)
-        * _chance_of_racks(sum(top), sum(bottom), count)
-        * _chance_of_dishes(top, count)
-        * _chance_of_dishes(bottom, count)
+        _probability_of_start(present, count)
+        * _probability_of_racks(sum(top), sum(bottom), count)
+        * _probability_of_dishes(top, count)
+        * _probability_of_dishes(bottom, count)
         for count in COUNTS
     )
 
 
-def _chance_of_start(present: int, count: int) -> float:
-    """At the start, half of the dishes to all of them are there, rounded from a uniform draw."""
+def _probability_of_start(present: int, count: int) -> float:
+    """The probability of `present` dishes at the start: uniform between half and all, rounded."""
     if not count <= present <= 2 * count:
         return 0.0
     return (0.5 if present in (count, 2 * count) else 1.0) / count
 
 
-def _chance_of_racks(top: int, bottom: int, count: int) -> float:
-    """That of `count` dishes a rack in random order, the first ones belong to the given racks."""
+def _probability_of_racks(top: int, bottom: int, count: int) -> float:
+    """The probability of the first dishes' racks, of `count` per rack in random order."""
     if max(top, bottom) > count:
         return 0.0
     return comb(2 * count - top - bottom, count - top) / comb(2 * count, count)
 
 
-def _chance_of_dishes(dishes: list[int], count: int) -> float:
-    """The chance of the first dishes of one rack, one after the other.
+def _probability_of_dishes(dishes: list[int], count: int) -> float:
+    """The probability of the first dishes of one rack, one after the other.
 
     A rack has one dish of each of its K categories, as far as `count` goes, and N more that are
     drawn uniformly from them. Let X_k of these be of category k, and c_k the dishes so far. The
-    chance is E[prod_k (1 + X_k)_{c_k}] / (count)_{sum c} with the falling factorial (x)_n. Since
-    (1 + x)_c = (x)_c + c (x)_{c-1} and E[prod_k (X_k)_{n_k}] = (N)_{sum n} / K^{sum n} for the
-    multinomial distribution, it is a sum over the elementary symmetric polynomials of c.
+    probability is E[prod_k (1 + X_k)_{c_k}] / (count)_{sum c}, where (x)_n is the falling
+    factorial. Since (1 + x)_c = (x)_c + c (x)_{c-1} and, for the multinomial distribution,
+    E[prod_k (X_k)_{n_k}] = (N)_{sum n} / K^{sum n}, it is a sum over the elementary symmetric
+    polynomials of c.
     """
-    kinds, so_far = len(dishes), sum(dishes)
-    if so_far > count or (count < kinds and max(dishes) > 1):
+    categories, so_far = len(dishes), sum(dishes)
+    if so_far > count or (count < categories and max(dishes) > 1):
         return 0.0
-    if count < kinds:  # no category twice
-        return 1 / perm(kinds, so_far)
+    if count < categories:  # no category twice
+        return 1 / perm(categories, so_far)
     polynomials = np.poly(-np.array(dishes)).tolist()  # e_0(c), ..., e_K(c)
     ways = sum(
-        polynomial * perm(count - kinds, so_far - once) / kinds ** (so_far - once)
+        polynomial * perm(count - categories, so_far - once) / categories ** (so_far - once)
         for once, polynomial in enumerate(polynomials[: so_far + 1])
     )
     return ways / perm(count, so_far)

@@ -27,11 +27,11 @@ def decisions_of(prompt: np.ndarray) -> Iterator[tuple[np.ndarray, int]]:
 
 
 def symbolic_preference(prompt: np.ndarray) -> Preference:
-    """The preference of a demonstration.
+    """Infer the preference of a demonstration.
 
     The first rack is the one that is opened first; a category's rack is where most of its dishes
-    go; of two categories of a rack the earlier is the one that is picked while the other waits.
-    What the prompt does not determine follows the order of CATEGORIES.
+    go; of two categories of a rack, the earlier one is picked while the other waits.
+    What the prompt leaves open follows the order of CATEGORIES.
 
     Args:
         prompt: (P, 14), padded.

@@ -1,4 +1,4 @@
-"""All 2 x 7! preferences as arrays, and what the expert would do under each of them at once."""
+"""All 2 x 7! preferences as arrays, and the expert's choice under each of them."""
 
 from dataclasses import dataclass
 from functools import cache
@@ -16,10 +16,10 @@ class PreferenceSpace:
     Attributes:
         first: The rack that is loaded first, (P,).
         rack: The rack of each category, (P, 7).
-        rank: The place of each category in its rack's order, (P, 7).
-        partitions: The 35 ways to give three categories to the top rack, the others to the bottom
+        rank: The rank of each category in its rack's order, (P, 7).
+        partitions: The 35 partitions into three categories of the top rack and four of the bottom
             rack, (35, 7).
-        partition: Which of them each preference has, (P,).
+        partition: The index of each preference's partition, (P,).
     """
 
     first: np.ndarray
@@ -45,10 +45,10 @@ def preference_space() -> PreferenceSpace:
 
 
 def expert_choices(view: ObservedView) -> np.ndarray:
-    """What `kitchen_prefs.simulation.expert.choose` gives under each preference.
+    """The result of `kitchen_prefs.simulation.expert.choose` under each preference.
 
     Args:
-        view: What is seen before the decision.
+        view: The view before the decision.
 
     Returns:
         The chosen rows, (P,).
@@ -64,7 +64,7 @@ def expert_choices(view: ObservedView) -> np.ndarray:
     fits = np.array([[view.fits(rack, c) for c in CATEGORIES] for rack in RACKS])  # (2, 7)
     opening = np.array([view.racks[rack] if view.door_open else view.door for rack in RACKS])
     chosen: np.ndarray = np.full(len(space.first), view.door)
-    for rack in (1 - space.first, space.first):  # what is said of the first rack prevails
+    for rack in (1 - space.first, space.first):  # the first rack overrides the other
         mine = waiting & (space.rack == rack[:, None])  # (P, 7)
         chosen = np.where(mine.any(axis=1), _next_dish(mine, nearest), chosen)
         chosen = np.where((mine & fits[rack]).any(axis=1), opening[rack], chosen)
@@ -72,7 +72,7 @@ def expert_choices(view: ObservedView) -> np.ndarray:
 
 
 def _places(view: ObservedView) -> np.ndarray:
-    """Where each preference puts the dish in hand, (P,) rows."""
+    """The place of the dish in hand under each preference, (P,) rows."""
     racks = preference_space().rack[:, CATEGORIES.index(str(view.held))]  # (P,)
     free = view.free_placements()
     if view.out is None or not free:

@@ -1,22 +1,8 @@
-"""Processors of the rules: LeRobot's default steps, with nothing normalised."""
+"""The processors of the rules: LeRobot's default steps, with nothing normalised.
 
-from typing import Any
+LeRobot finds them by this module's and this function's name.
+"""
 
-import torch
-from lerobot.processor import (
-    PolicyAction,
-    PolicyProcessorPipeline,
-    make_default_pre_post_processors,
-)
+from lerobot.processor import make_default_pre_post_processors as make_rules_pre_post_processors
 
-from lerobot_policy_kitchen_prefs.rules.configuration_rules import RulesConfig
-
-
-def make_rules_pre_post_processors(
-    config: RulesConfig, dataset_stats: dict[str, dict[str, torch.Tensor]] | None = None
-) -> tuple[
-    PolicyProcessorPipeline[dict[str, Any], dict[str, Any]],
-    PolicyProcessorPipeline[PolicyAction, PolicyAction],
-]:
-    """Make the pipelines before and after the policy (LeRobot's naming convention finds this)."""
-    return make_default_pre_post_processors(config, dataset_stats)
+__all__ = ["make_rules_pre_post_processors"]

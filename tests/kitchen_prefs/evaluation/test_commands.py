@@ -24,7 +24,7 @@ from kitchen_prefs.metrics import METRICS
 
 @pytest.fixture
 def few_sessions(monkeypatch):
-    """Cut the splits that these tests play down to their first five sessions."""
+    """Cut the splits that these tests roll out down to their first five sessions."""
     for name in ("val", "seen", "noisy"):
         split = splits.SPLITS[name]
         monkeypatch.setitem(splits.SPLITS, name, replace(split, users=split.users[:5]))
@@ -259,11 +259,11 @@ def test_the_expert_rule_is_perfect(tmp_path):
     metrics = json.loads((tmp_path / "seen.json").read_text())["metrics"]
     assert {metrics[name]["low"] for name in (*METRICS, "Turn", "ED_c without refused")} == {1}
     assert metrics["Refused"]["high"] == 0
-    assert metrics["Rescaled"]["mean"] > 1  # the expert knows what no prompt tells
+    assert metrics["Rescaled"]["mean"] > 1  # the expert knows what no prompt shows
 
 
 @pytest.mark.parametrize("place", ["/proc/kitchen_prefs", "file", "file/below"])
-def test_a_folder_that_cannot_be_written_is_told_before_the_policy_is_loaded(tmp_path, place):
+def test_a_folder_that_cannot_be_written_is_refused_before_the_policy_is_loaded(tmp_path, place):
     (tmp_path / "file").touch()
     out = tmp_path / place
     with pytest.raises(OSError, match=f"^{out} cannot be written; give another --out.$"):

@@ -87,7 +87,7 @@ def test_episodes_do_not_depend_on_the_batch_size(batch_size):
     assert roll_out(Lowest(), "seen", sessions=SESSIONS, batch_size=batch_size) == expected
 
 
-def test_each_session_is_played_once_in_order():
+def test_each_session_is_rolled_out_once_in_order():
     episodes = roll_out(Lowest(), "val", batch_size=32)
     assert [episode.session for episode in episodes] == list(range(70))
     assert {episode.split for episode in episodes} == {"val"}
@@ -130,7 +130,7 @@ def test_unknown_names_are_refused_with_the_nearest():
 # The file ---------------------------------------------------------------------------------------
 
 
-def test_a_killed_evaluation_goes_on(tmp_path):
+def test_a_killed_evaluation_resumes(tmp_path):
     path = tmp_path / "seen.jsonl"
     whole = roll_out(
         Lowest(), "seen", sessions=SESSIONS, batch_size=2, file=EpisodeFile(path, STANDARD)
@@ -148,7 +148,7 @@ def test_a_killed_evaluation_goes_on(tmp_path):
     assert sorted(e.session for e in read_episodes(path)) == sorted(SESSIONS)
 
 
-def test_a_finished_evaluation_plays_nothing(tmp_path):
+def test_a_finished_evaluation_rolls_out_nothing(tmp_path):
     path = tmp_path / "seen.jsonl"
     first = roll_out(Lowest(), "seen", sessions=[3], file=EpisodeFile(path, STANDARD))
     policy = Lowest()
@@ -191,7 +191,7 @@ def test_a_damaged_header_is_named(tmp_path, content):
         EpisodeFile(tmp_path / "seen.jsonl", STANDARD)
 
 
-def test_in_the_experts_states_the_experts_load_is_no_merit(tmp_path):
+def test_on_expert_states_the_packing_is_not_measured(tmp_path):
     path = tmp_path / "seen.jsonl"
     file = EpisodeFile(path, replace(STANDARD, expert_states=True))
     (episode,) = roll_out(Lowest(), "seen", sessions=[0], expert_states=True, file=file)

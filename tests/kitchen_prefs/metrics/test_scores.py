@@ -13,6 +13,7 @@ from kitchen_prefs.metrics import (
     METRICS,
     category_accuracy,
     category_edit_similarity,
+    count_failure_modes,
     edit_similarity,
     failure_modes,
     packing_efficiency,
@@ -98,6 +99,12 @@ def test_sinking_what_the_expert_sinks_is_no_failure():
     assert reasons["closed early"] == 2
     assert reasons["blocked place"] == 1
     assert failure_modes(episode_of(sunk=1, expert_sunk=2))["sunk without need"] == 0
+
+
+def test_failure_modes_are_counted_by_episodes_and_in_all():
+    counts = count_failure_modes([episode_of(), episode_of(wrong_rack=2), episode_of(wrong_rack=1)])
+    assert counts["wrong rack"] == (2, 3)
+    assert counts["closed early"] == (0, 0)
 
 
 @given(episodes)

@@ -8,8 +8,8 @@ from kitchen_prefs.utils.files import atomic_file, make_folder, write_json
 
 def test_what_is_there_stays_until_the_new_file_is_whole(tmp_path):
     path = tmp_path / "arrays.npz"
-    with atomic_file(path) as beside:
-        np.savez(beside, numbers=np.arange(3))
+    with atomic_file(path) as unfinished:
+        np.savez(unfinished, numbers=np.arange(3))
     whole = path.read_bytes()
     with pytest.raises(KeyboardInterrupt):
         write_half(path)
@@ -18,8 +18,8 @@ def test_what_is_there_stays_until_the_new_file_is_whole(tmp_path):
 
 
 def write_half(path):
-    with atomic_file(path) as beside:
-        beside.write_bytes(b"half")
+    with atomic_file(path) as unfinished:
+        unfinished.write_bytes(b"half")
         raise KeyboardInterrupt
 
 

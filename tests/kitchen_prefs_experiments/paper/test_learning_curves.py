@@ -56,9 +56,9 @@ def config_of(recipe):
     return settings | {"steps": 400, "seed": 1000}
 
 
-def save(run, step, **told):
+def save(run, step, **changed):
     """Checkpoints as lerobot-train leaves them: every 200 steps, and a link to the last."""
-    config = json.dumps(config_of(run.name) | told)
+    config = json.dumps(config_of(run.name) | changed)
     for at in range(200, step + 1, 200):
         checkpoint = run / "checkpoints" / f"{at:06}"
         (checkpoint / "pretrained_model").mkdir(parents=True, exist_ok=True)
@@ -104,7 +104,7 @@ def test_each_recipe_is_trained_where_the_next_one_looks_for_it(machine, tmp_pat
     assert "path: outputs/ttp_quick/checkpoints/last" in recipe_file("ttp_plus").read_text()
 
 
-def test_a_checkpoint_comes_after_the_seconds_of_its_steps_and_of_what_it_goes_on_from(machine):
+def test_a_checkpoint_comes_after_the_seconds_of_its_steps_and_of_the_run_it_continues(machine):
     rows = run_curves("learning", CURVES).rows
     seconds = {recipe: [p.seconds for p in row.points] for recipe, row in rows.items()}
     assert seconds == {"ttp_quick": [100, 200], "ttp_plus": [300, 400], "ttp_paper": [100, 200]}
@@ -112,7 +112,7 @@ def test_a_checkpoint_comes_after_the_seconds_of_its_steps_and_of_what_it_goes_o
     assert set(rows["ttp_plus"].points[0].metrics) == {"Score", "PE", "ED_c"}
 
 
-def test_what_is_there_is_not_trained_again_and_what_was_stopped_goes_on(machine):
+def test_a_finished_run_is_not_trained_again_and_a_stopped_one_resumes(machine):
     run_curves("learning", CURVES)
     save(Path("outputs/ttp_paper"), 200)
     machine.calls.clear()
@@ -145,15 +145,15 @@ def test_a_run_of_another_program_is_left_alone(machine, step):
 
 
 @pytest.mark.parametrize(
-    ("told", "differing"),
+    ("changed", "differing"),
     [
         ({"steps": 200}, "steps"),
         ({"batch_size": 8, "optimizer": None}, "optimizer.type and .* and batch_size"),
         ({"policy": config_of("ttp_plus")["policy"] | {"recognise": False}}, "policy.recognise"),
     ],
 )
-def test_a_finished_run_with_other_settings_is_not_the_recipes(machine, told, differing):
-    save(Path("outputs/ttp_plus"), told.get("steps", 400), **told)
+def test_a_finished_run_with_other_settings_is_not_the_recipes(machine, changed, differing):
+    save(Path("outputs/ttp_plus"), changed.get("steps", 400), **changed)
     Path("outputs/ttp_plus.log").write_text(LOGGED.format(400))
     with pytest.raises(ValueError, match=f"the recipe 'ttp_plus' differ in {differing}; delete"):
         run_curves("learning", CURVES)
@@ -180,7 +180,7 @@ def test_lerobot_keeps_the_settings_of_a_recipe_as_they_stand(recipe):
 
 def test_a_finished_run_without_its_log_is_named_before_anything_is_trained(machine):
     save(Path("outputs/ttp_plus"), 400)
-    with pytest.raises(ValueError, match=r"outputs/ttp_plus\.log does not say how long"):
+    with pytest.raises(ValueError, match=r"outputs/ttp_plus\.log holds no durations of steps"):
         run_curves("learning", CURVES)
     assert not machine.calls
 

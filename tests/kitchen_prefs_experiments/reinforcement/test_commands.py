@@ -35,7 +35,7 @@ from lerobot_policy_kitchen_prefs.ttp import TTPConfig
 
 pytestmark = pytest.mark.xdist_group("reinforcement")  # one fixture of the module serves all
 
-# A small network that plays 32 decisions between two updates.
+# A small network with 32 decisions between two updates.
 TINY = (
     "--policy.dim=8",
     "--num_envs=2",
@@ -112,7 +112,7 @@ def test_sessions_are_the_published_ones_of_train_and_change():
     assert len(seen) > 3
 
 
-def test_what_cannot_be_chosen_is_forbidden_and_counts():
+def test_a_row_that_cannot_be_chosen_is_refused_and_counts():
     environment = RowActions()
     before = deepcopy(environment.reset(seed=0)[0])
     limit = LIMIT_FACTOR * len(demonstrate(make_session("train", 0)).action)
@@ -178,7 +178,7 @@ def test_only_what_a_decision_may_choose_has_a_chance():
         environments.step([int(np.flatnonzero(chances)[-1])] * args.num_envs)
 
 
-def test_a_run_goes_on_and_learns(trained):
+def test_a_run_resumes_and_learns(trained):
     last = trained / "checkpoints" / "last"
     assert last.resolve().name == "000064"
     step = json.loads((last / "training_state" / "training_step.json").read_text())["step"]
@@ -190,7 +190,7 @@ def test_a_run_goes_on_and_learns(trained):
     assert config["pretrained_path"] is None
 
 
-def test_what_goes_on_is_what_was_saved(tmp_path):
+def test_a_resumed_run_restores_what_was_saved(tmp_path):
     args = read_args("gnn_rl", TINY)
 
     def learner_of(policy):
@@ -225,7 +225,7 @@ def test_a_run_with_other_settings_is_refused(trained):
 
 
 @pytest.mark.slow
-def test_evaluate_plays_the_export_on_the_privileged_track(trained, tmp_path):
+def test_evaluate_rolls_the_checkpoint_out_on_the_privileged_track(trained, tmp_path):
     checkpoint = trained / "checkpoints" / "last" / "pretrained_model"
     given = (f"--policy.path={checkpoint}", f"--out={tmp_path}", "--batch-size=30")
     run("evaluate", "--split=noisy", *given)
