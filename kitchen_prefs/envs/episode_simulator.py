@@ -168,14 +168,14 @@ class EpisodeSimulator:
 
         None if a dish is in hand, no rack is out, or the dishes of fewer than two ranks wait.
         """
-        if self.kitchen.held is not None or self.kitchen.out is None:
+        if self.kitchen.held is not None or self.kitchen.open_rack is None:
             return None
         preference, category = self.session.preference, self.session.dishes.category
         names = {dish: CATEGORIES[category[dish]] for dish in self.kitchen.counter.tolist()}
         ranks = {
             dish: preference.rank_of[name]
             for dish, name in names.items()
-            if preference.rack_of[name] == self.kitchen.out
+            if preference.rack_of[name] == self.kitchen.open_rack
         }
         if len(set(ranks.values())) < 2:
             return None

@@ -141,8 +141,8 @@ class Observer:
         kitchen = self._kitchen
         rows = np.zeros((len(OBJECT_IDS) + len(dishes), instances.COLUMNS), dtype=np.float32)
         rows[0] = DOOR_ROWS[int(kitchen.door_open)]
-        rows[1] = RACK_ROWS["bottom"][int(kitchen.out == "bottom")]
-        rows[2] = RACK_ROWS["top"][int(kitchen.out == "top")]
+        rows[1] = RACK_ROWS["bottom"][int(kitchen.open_rack == "bottom")]
+        rows[2] = RACK_ROWS["top"][int(kitchen.open_rack == "top")]
         rows[3:, instances.EXTENTS] = extents[dishes]
         rows[3:, instances.POSITION] = position[dishes]
         rows[3:, instances.QUATERNION] = kitchen.pose[dishes, 3:]
@@ -158,15 +158,17 @@ class Observer:
         rows[:, instances.EXTENTS] = extents[kitchen.held]
         rows[:, instances.IS_PLACE] = 1
         rows[-1, instances.POSE] = SINK_POSE
-        if kitchen.out is None:
+        if kitchen.open_rack is None:
             return rows, np.array([SINK])
-        rows[:-1, instances.POSE] = placement_table().pose[kitchen.out][placements]
-        return rows, np.append(FIRST_PLACEMENT[kitchen.out] + placements, SINK)
+        rows[:-1, instances.POSE] = placement_table().pose[kitchen.open_rack][placements]
+        return rows, np.append(FIRST_PLACEMENT[kitchen.open_rack] + placements, SINK)
 
     def _joints(self) -> np.ndarray:
         kitchen = self._kitchen
         door = layout.DOOR_OPEN_ANGLE * kitchen.door_open
-        return np.array([door, *(layout.RACK_TRAVEL * (kitchen.out == rack) for rack in RACKS)])
+        return np.array(
+            [door, *(layout.RACK_TRAVEL * (kitchen.open_rack == rack) for rack in RACKS)]
+        )
 
     def _in_hand(self) -> np.ndarray:
         in_hand = np.zeros(len(CATEGORIES))
@@ -191,9 +193,9 @@ class Observer:
 
     def _nearest_free(self) -> np.ndarray:
         kitchen = self._kitchen
-        if kitchen.held is None or kitchen.out is None:
+        if kitchen.held is None or kitchen.open_rack is None:
             return np.zeros(8)
-        rack = kitchen.out
+        rack = kitchen.open_rack
         free = kitchen.free(rack, int(kitchen.dishes.category[kitchen.held]))
         if len(free) == 0:
             return np.zeros(8)

@@ -36,9 +36,9 @@ def reward(view: KitchenView, preference: Preference, instance: int) -> float:
 
 
 def _fits_preferred_rack(kitchen: Kitchen, preference: Preference, instance: int) -> bool:
-    if kitchen.out is None or instance == SINK:
+    if kitchen.open_rack is None or instance == SINK:
         return False
     category = int(kitchen.dishes.category[kitchen.held])
-    placement = instance - FIRST_PLACEMENT[kitchen.out]
-    free = (kitchen.free(kitchen.out, category) == placement).any()
-    return bool(free) and preference.rack_of[CATEGORIES[category]] == kitchen.out
+    placement = instance - FIRST_PLACEMENT[kitchen.open_rack]
+    free = (kitchen.free(kitchen.open_rack, category) == placement).any()
+    return bool(free) and preference.rack_of[CATEGORIES[category]] == kitchen.open_rack

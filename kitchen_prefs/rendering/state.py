@@ -46,4 +46,6 @@ def scene_of(kitchen: Kitchen, opened: bool = False) -> SceneState:
     )
     if opened:
         return SceneState(door_open=True, bottom_out=True, top_out=True, dishes=dishes)
-    return SceneState(kitchen.door_open, kitchen.out == "bottom", kitchen.out == "top", dishes)
+    return SceneState(
+        kitchen.door_open, kitchen.open_rack == "bottom", kitchen.open_rack == "top", dishes
+    )

@@ -58,7 +58,7 @@ class View(Protocol):
         """Whether the door is open."""
 
     @property
-    def out(self) -> str | None:
+    def open_rack(self) -> str | None:
         """The rack that is pulled out, or None."""
 
     @property
@@ -88,9 +88,11 @@ def choose(view: View, preference: Preference) -> int:
     if view.held is not None:
         return _where_to_put(view, preference)
     waiting = view.waiting()
-    if view.out is not None:
-        mine = [option for option in waiting if preference.rack_of[option.category] == view.out]
-        return _next_dish(mine, preference) if mine else view.racks[view.out]
+    if view.open_rack is not None:
+        mine = [
+            option for option in waiting if preference.rack_of[option.category] == view.open_rack
+        ]
+        return _next_dish(mine, preference) if mine else view.racks[view.open_rack]
     for rack in preference.racks:
         mine = [option for option in waiting if preference.rack_of[option.category] == rack]
         if any(view.fits(rack, option.category) for option in mine):
@@ -106,7 +108,7 @@ def _next_dish(options: Sequence[Option], preference: Preference) -> int:
 
 
 def _where_to_put(view: View, preference: Preference) -> int:
-    if view.held is None or preference.rack_of[view.held] != view.out:
+    if view.held is None or preference.rack_of[view.held] != view.open_rack:
         return view.sink
     free = view.free_placements()
     return min(free, key=lambda option: option.nearness).choice if free else view.sink
@@ -154,9 +156,9 @@ class KitchenView:
         return self.kitchen.door_open
 
     @property
-    def out(self) -> str | None:
+    def open_rack(self) -> str | None:
         """The rack that is pulled out, or None."""
-        return self.kitchen.out
+        return self.kitchen.open_rack
 
     @property
     def held(self) -> str | None:
@@ -174,12 +176,15 @@ class KitchenView:
         """The free placements of the pulled-out rack for the category in hand."""
         kitchen = self.kitchen
         assert kitchen.held is not None
-        assert kitchen.out is not None
+        assert kitchen.open_rack is not None
         category = kitchen.dishes.category[kitchen.held]
-        nearness, first = placement_nearness()[kitchen.out], FIRST_PLACEMENT[kitchen.out]
+        nearness, first = (
+            placement_nearness()[kitchen.open_rack],
+            FIRST_PLACEMENT[kitchen.open_rack],
+        )
         return [
             Option(CATEGORIES[category], nearness[placement], first + placement)
-            for placement in kitchen.free(kitchen.out, category).tolist()
+            for placement in kitchen.free(kitchen.open_rack, category).tolist()
         ]
 
     def fits(self, rack: str, category: str) -> bool:

@@ -102,7 +102,7 @@ class Kitchen:
     Attributes:
         dishes: The session's dishes.
         door_open: Whether the door is open.
-        out: The rack that is pulled out, or None.
+        open_rack: The rack that is pulled out, or None.
         held: The dish in hand, or None. It stays where it was picked until it is placed.
         location: Where each dish is, (n,) int8 of `Location`.
         placement: The placement of each dish in a rack, else -1, (n,) int64.
@@ -114,7 +114,7 @@ class Kitchen:
         n = len(dishes.category)
         self.dishes = dishes
         self.door_open = False
-        self.out: str | None = None
+        self.open_rack: str | None = None
         self.held: int | None = None
         self.location = np.full(n, Location.NOT_ARRIVED, dtype=np.int8)
         self.location[: dishes.present] = Location.COUNTER
@@ -131,13 +131,13 @@ class Kitchen:
     def visible_dishes(self) -> np.ndarray:
         """The dishes on the counter or in the pulled-out rack, (k,) int."""
         visible = self.location == Location.COUNTER
-        if self.out is not None:
-            visible |= self.location == IN_RACK[self.out]
+        if self.open_rack is not None:
+            visible |= self.location == IN_RACK[self.open_rack]
         return np.flatnonzero(visible)
 
     def placements(self) -> np.ndarray:
         """The placements of the category in hand in the pulled-out rack, free or not, (k,) int."""
-        if self.held is None or self.out is None:
+        if self.held is None or self.open_rack is None:
             return np.empty(0, dtype=int)
         return self._table.of_category[self.dishes.category[self.held]]
 
@@ -159,7 +159,7 @@ class Kitchen:
     @property
     def closed(self) -> bool:
         """Whether both racks are in and the door is closed."""
-        return self.out is None and not self.door_open
+        return self.open_rack is None and not self.door_open
 
     @property
     def finished(self) -> bool:
@@ -188,7 +188,7 @@ class Kitchen:
         if self.held is not None:
             return self._refusal_of_place(instance)
         if instance == DOOR:
-            return "" if self.out is None else "The door moves only with both racks in."
+            return "" if self.open_rack is None else "The door moves only with both racks in."
         if instance in RACK_OF_INSTANCE:
             return self._refusal_of_rack(RACK_OF_INSTANCE[instance])
         dish = instance - FIRST_DISH
@@ -199,16 +199,19 @@ class Kitchen:
     def _refusal_of_rack(self, rack: str) -> str:
         if not self.door_open:
             return "A rack moves only with the door open."
-        if self.out not in (None, rack):
+        if self.open_rack not in (None, rack):
             return "A rack moves only with the other rack in."
         return ""
 
     def _refusal_of_place(self, instance: int) -> str:
         if instance == SINK:
             return ""
-        if self.out is None or instance - FIRST_PLACEMENT[self.out] not in self.placements():
+        if (
+            self.open_rack is None
+            or instance - FIRST_PLACEMENT[self.open_rack] not in self.placements()
+        ):
             return "A dish goes only into a placement of its category in the rack that is out."
-        if self._blocked[self.out][instance - FIRST_PLACEMENT[self.out]]:
+        if self._blocked[self.open_rack][instance - FIRST_PLACEMENT[self.open_rack]]:
             return "The placement is blocked by a dish in the rack."
         return ""
 
@@ -221,7 +224,7 @@ class Kitchen:
         elif instance == DOOR:
             self.door_open = not self.door_open
         else:
-            self.out = RACK_OF_INSTANCE[instance] if self.out is None else None
+            self.open_rack = RACK_OF_INSTANCE[instance] if self.open_rack is None else None
         self._complete_action()
 
     def _put(self, instance: int) -> None:
@@ -233,8 +236,8 @@ class Kitchen:
         self.held = None
 
     def _put_into_rack(self, instance: int) -> None:
-        assert self.out is not None
-        rack, placement = self.out, instance - FIRST_PLACEMENT[self.out]
+        assert self.open_rack is not None
+        rack, placement = self.open_rack, instance - FIRST_PLACEMENT[self.open_rack]
         self.location[self.held] = IN_RACK[rack]
         self.placement[self.held] = placement
         self.pose[self.held] = self._table.pose[rack][placement]
@@ -242,7 +245,7 @@ class Kitchen:
 
     def _complete_action(self) -> None:
         self.completed += 1
-        cleared = self.out is None and not (self.location == Location.COUNTER).any()
+        cleared = self.open_rack is None and not (self.location == Location.COUNTER).any()
         if cleared or self.completed >= ARRIVALS_AT_LATEST:
             self._arriving = True
         if self._arriving and not self.all_arrived:
@@ -255,13 +258,13 @@ class Kitchen:
         """The pose of each dish in the world, (n, 7) float32; closed racks are further back (m)."""
         pose = self.pose.copy()
         for rack in RACKS:
-            if rack != self.out:
+            if rack != self.open_rack:
                 pose[self.location == IN_RACK[rack], 1] += layout.RACK_TRAVEL
         return pose
 
     def digest(self) -> str:
         """A hash of the whole state, the same in every process."""
-        joints = (self.door_open, self.out, self.held)
+        joints = (self.door_open, self.open_rack, self.held)
         arrivals = (self.completed, self._arriving, self._arrived)
         sha = hashlib.sha256(repr(joints + arrivals).encode())
         for array in (self.dishes.category, self.pose, self.location, self.placement):

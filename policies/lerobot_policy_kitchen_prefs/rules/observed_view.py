@@ -34,15 +34,15 @@ class ObservedView:
         self.door, self.door_open = self._find(DOOR_ROWS)
         found = {rack: self._find(RACK_ROWS[rack]) for rack in RACKS}
         self.racks = {rack: row for rack, (row, _) in found.items()}
-        self.out = next((rack for rack, (_, out) in found.items() if out), None)
+        self.open_rack = next((rack for rack, (_, out) in found.items() if out), None)
         places = np.flatnonzero(rows[:, instances.IS_PLACE] > 0)
         self.held = CATEGORIES[self._category[places[0]]] if len(places) else None
         in_sink = (self._poses[places] == SINK_POSE).all(axis=1)
         self.sink = int(places[in_sink][0]) if len(places) else -1
         self._placements = places[~in_sink]
         self._blocked = dict(memory.blocked) if memory else {}
-        if self.out is not None:
-            self._blocked[self.out] = self._blocked_in(self.out)
+        if self.open_rack is not None:
+            self._blocked[self.open_rack] = self._blocked_in(self.open_rack)
         if memory is not None:
             memory.blocked = self._blocked
 
@@ -55,14 +55,14 @@ class ObservedView:
 
     def free_placements(self) -> list[Option]:
         """The free placements of the rack that is out for the category in hand."""
-        if self.out is None:
+        if self.open_rack is None:
             return []
         table = placement_table()
         of_held = table.of_category[CATEGORIES.index(str(self.held))]
         return [
-            self._option(row, nearness_to_corner(self._poses[row], self.out))
+            self._option(row, nearness_to_corner(self._poses[row], self.open_rack))
             for row in self._placements
-            if not self._blocked[self.out][self._placement_at(self._poses[row], of_held)]
+            if not self._blocked[self.open_rack][self._placement_at(self._poses[row], of_held)]
         ]
 
     def fits(self, rack: str, category: str) -> bool:
@@ -106,6 +106,6 @@ class ObservedView:
 
     def _placement_at(self, pose: np.ndarray, among: np.ndarray) -> int:
         """The placement of the rack that is out with a dish's pose."""
-        assert self.out is not None
-        poses = placement_table().pose[self.out][among]
+        assert self.open_rack is not None
+        poses = placement_table().pose[self.open_rack][among]
         return int(among[np.abs(poses - pose).sum(axis=1).argmin()])

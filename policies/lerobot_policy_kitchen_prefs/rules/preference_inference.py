@@ -46,9 +46,9 @@ def symbolic_preference(prompt: np.ndarray) -> Preference:
         view = ObservedView(rows)
         if first is None and chosen in view.racks.values():
             first = next(rack for rack, row in view.racks.items() if row == chosen)
-        if view.held is not None and view.out is not None and chosen != view.sink:
-            racks[view.held][view.out] += 1
-        if view.held is None and view.out is not None:
+        if view.held is not None and view.open_rack is not None and chosen != view.sink:
+            racks[view.held][view.open_rack] += 1
+        if view.held is None and view.open_rack is not None:
             waiting = view.waiting()
             if chosen in [option.choice for option in waiting]:
                 picks.append((view.category(chosen), {option.category for option in waiting}))

@@ -58,9 +58,9 @@ def expert_choices(view: ObservedView) -> np.ndarray:
     space = preference_space()
     nearest = _nearest_dish(view)  # (7,)
     waiting = nearest >= 0
-    if view.out is not None:
-        mine = waiting & (space.rack == RACKS.index(view.out))  # (P, 7)
-        return np.where(mine.any(axis=1), _next_dish(mine, nearest), view.racks[view.out])
+    if view.open_rack is not None:
+        mine = waiting & (space.rack == RACKS.index(view.open_rack))  # (P, 7)
+        return np.where(mine.any(axis=1), _next_dish(mine, nearest), view.racks[view.open_rack])
     fits = np.array([[view.fits(rack, c) for c in CATEGORIES] for rack in RACKS])  # (2, 7)
     opening = np.array([view.racks[rack] if view.door_open else view.door for rack in RACKS])
     chosen: np.ndarray = np.full(len(space.first), view.door)
@@ -75,10 +75,10 @@ def _places(view: ObservedView) -> np.ndarray:
     """The place of the dish in hand under each preference, (P,) rows."""
     racks = preference_space().rack[:, CATEGORIES.index(str(view.held))]  # (P,)
     free = view.free_placements()
-    if view.out is None or not free:
+    if view.open_rack is None or not free:
         return np.full(len(racks), view.sink)
     nearest = min(free, key=lambda option: option.nearness).choice
-    return np.where(racks == RACKS.index(view.out), nearest, view.sink)
+    return np.where(racks == RACKS.index(view.open_rack), nearest, view.sink)
 
 
 def _nearest_dish(view: ObservedView) -> np.ndarray:

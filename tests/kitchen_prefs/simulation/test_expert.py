@@ -28,16 +28,16 @@ def feasible_decision(kitchen, session, generator):
     """A random decision that the kitchen carries out; a third of the racked dishes go wrong."""
     if kitchen.held is not None:
         return random_place(kitchen, generator)
-    if kitchen.out is None:
+    if kitchen.open_rack is None:
         return random_without_a_rack(kitchen, generator)
     wrong = generator.random() < 1 / 3
     dishes = [
         dish
         for dish in kitchen.counter.tolist()
-        if (preferred_rack(session, dish) != kitchen.out) == wrong
+        if (preferred_rack(session, dish) != kitchen.open_rack) == wrong
     ]
     if not dishes or generator.random() < 0.1:
-        return RACK_INSTANCE[kitchen.out]
+        return RACK_INSTANCE[kitchen.open_rack]
     return FIRST_DISH + int(generator.choice(dishes))
 
 
@@ -52,12 +52,12 @@ def random_without_a_rack(kitchen, generator):
 
 def random_place(kitchen, generator):
     """A free placement, or now and then the sink."""
-    if kitchen.out is None or generator.random() < 0.1:
+    if kitchen.open_rack is None or generator.random() < 0.1:
         return SINK
-    free = kitchen.free(kitchen.out, int(kitchen.dishes.category[kitchen.held]))
+    free = kitchen.free(kitchen.open_rack, int(kitchen.dishes.category[kitchen.held]))
     if len(free) == 0:
         return SINK
-    return FIRST_PLACEMENT[kitchen.out] + int(generator.choice(free))
+    return FIRST_PLACEMENT[kitchen.open_rack] + int(generator.choice(free))
 
 
 @pytest.mark.parametrize("split", ["seen", "unseen_both", "many_preferences"])

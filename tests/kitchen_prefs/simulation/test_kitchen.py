@@ -55,9 +55,9 @@ def drawn_instance(kitchen, kind, number):
     if kind == "anything":
         options = ANYTHING
     elif kitchen.held is not None:
-        first = FIRST_PLACEMENT.get(kitchen.out, 0)
+        first = FIRST_PLACEMENT.get(kitchen.open_rack, 0)
         options = [*(first + kitchen.placements()).tolist(), SINK]
-    elif kind == "dish" and kitchen.out is not None and len(kitchen.counter) > 0:
+    elif kind == "dish" and kitchen.open_rack is not None and len(kitchen.counter) > 0:
         options = (FIRST_DISH + kitchen.counter).tolist()
     else:
         options = JOINTS
@@ -81,7 +81,7 @@ class Witness:
 
     def __init__(self):
         self.put = {}  # dish -> "bottom", "top" or "sink"
-        self.out = None
+        self.open_rack = None
 
     def see(self, held, instance):
         if held is not None:
@@ -89,7 +89,7 @@ class Witness:
             self.put[held] = racks.get(instance // 1000, "sink")
         for rack, joint in RACK_INSTANCE.items():
             if held is None and instance == joint:
-                self.out = rack if self.out is None else None
+                self.open_rack = rack if self.open_rack is None else None
 
 
 def assert_no_two_dishes_block_each_other(kitchen):
@@ -119,7 +119,7 @@ def test_no_sequence_of_decisions_breaks_the_rules(session, draws):
         away = places > Location.COUNTER
         assert (kitchen.location[away] == places[away]).all(), "a dish that was put away moved"
         assert (kitchen.location[places == Location.COUNTER] != Location.NOT_ARRIVED).all()
-        assert kitchen.door_open or kitchen.out is None
+        assert kitchen.door_open or kitchen.open_rack is None
         assert_no_two_dishes_block_each_other(kitchen)
 
         visible = set(kitchen.visible_dishes().tolist())

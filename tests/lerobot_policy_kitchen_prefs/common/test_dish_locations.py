@@ -19,9 +19,9 @@ def observed_rows(session, noise):
     for decision in expert_trajectory(session).decisions:
         seen = observer.observe()
         locations |= {FIRST_DISH + dish: at for dish, at in enumerate(kitchen.location)}
-        if kitchen.out is not None:
-            at = Location.TOP if kitchen.out == "top" else Location.BOTTOM
-            first = FIRST_PLACEMENT[kitchen.out]
+        if kitchen.open_rack is not None:
+            at = Location.TOP if kitchen.open_rack == "top" else Location.BOTTOM
+            first = FIRST_PLACEMENT[kitchen.open_rack]
             locations |= {i: at for i in seen.ids.tolist() if i >= first}
         known = np.array([i in locations for i in seen.ids.tolist()])
         rows.append(seen.rows[known])
