@@ -124,7 +124,7 @@ def test_no_sequence_of_decisions_breaks_the_rules(session, draws):
 
         visible = set(kitchen.visible_dishes().tolist())
         for dish, where in witness.put.items():
-            assert (dish in visible) == (where == witness.out), f"dish {dish} in {where}"
+            assert (dish in visible) == (where == witness.open_rack), f"dish {dish} in {where}"
 
 
 def test_such_sequences_rack_dishes_and_are_carried_out_and_refused():
