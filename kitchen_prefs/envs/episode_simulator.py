@@ -10,7 +10,7 @@ import numpy as np
 
 from kitchen_prefs import instances
 from kitchen_prefs.envs.actions import nearest_row
-from kitchen_prefs.envs.observations import FAILED_PICKS, Observer
+from kitchen_prefs.envs.observations import Observer
 from kitchen_prefs.metrics import Episode
 from kitchen_prefs.preferences import CATEGORIES, RACKS
 from kitchen_prefs.simulation import kitchen as k
@@ -22,6 +22,7 @@ from kitchen_prefs.splits import get_split
 Action = np.ndarray | Sequence[float]  # a pose: position (m) and quaternion (wxyz), (7,)
 
 LIMIT_FACTOR = 2  # an episode ends at twice the expert's number of decisions
+FAILED_PICKS = 0.05  # one pick in twenty fails where grasping is noisy (design of `noisy`)
 
 
 class EpisodeSimulator:

@@ -30,7 +30,6 @@ from kitchen_prefs.simulation.kitchen import (
 
 EXTENT_NOISE = 0.05  # standard deviation, relative (design of the `noisy` split)
 POSITION_NOISE = 0.01  # standard deviation, m
-FAILED_PICKS = 0.05  # one pick in twenty
 
 STATE = (
     "door angle (rad)",

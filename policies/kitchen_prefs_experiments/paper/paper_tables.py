@@ -26,7 +26,7 @@ from kitchen_prefs_experiments.paper.evaluated_policies import (
 )
 from kitchen_prefs_experiments.paper.table_types import Curves, Table
 
-ALL_METRICS = ("PE", "Score", "ED_c", "ED", "TE", "Success")
+TABLE_METRICS = ("PE", "Score", "ED_c", "ED", "TE", "Success")
 
 TABLES: dict[str, Table | Curves] = {  # in the order of the pages
     "main": Table(
@@ -56,7 +56,7 @@ TABLES: dict[str, Table | Curves] = {  # in the order of the pages
         axis="test split",
         rows=GNN_IL | {"TTP, ttp_quick": QUICK} | TTP | {"symbolic": RULES["symbolic"]},
         splits=TEST_SPLITS,
-        metrics=ALL_METRICS,
+        metrics=TABLE_METRICS,
         paper_values={"GNN-IL in the paper": {"seen": 0.34}},
         note=(
             "The GNN rows are of the privileged track: the label is an input. There are twelve "
@@ -78,7 +78,7 @@ TABLES: dict[str, Table | Curves] = {  # in the order of the pages
         axis="test split",
         rows=GNN_RL | {"random": RULES["random"], "symbolic": RULES["symbolic"]},
         splits=TEST_SPLITS,
-        metrics=ALL_METRICS,
+        metrics=TABLE_METRICS,
         paper_values={"GNN-RL in the paper": {"seen": 0.017}},
         note=(
             "The GNN rows are of the open track, because they learn in the simulator, and they are "
@@ -98,7 +98,7 @@ TABLES: dict[str, Table | Curves] = {  # in the order of the pages
             **{name: RULES[name] for name in ("random", "majority", "symbolic")},
         },
         splits=TEST_SPLITS,
-        metrics=ALL_METRICS,
+        metrics=TABLE_METRICS,
         note=(
             "ACT and diffusion are LeRobot's, unchanged. They observe a flat summary of the "
             "visible set and neither a prompt nor a label, and return poses, of which the "
