@@ -43,9 +43,11 @@ POLICIES = {
 }
 EXPERIMENTS = {
     "recipes": "kitchen_prefs.utils",
+    "markdown": "kitchen_prefs.metrics",
     "lerobot_train": "recipes kitchen_prefs.utils",
     "quickstart": (
-        "lerobot_train recipes kitchen_prefs.datasets kitchen_prefs.envs kitchen_prefs.evaluation "
+        "lerobot_train markdown recipes kitchen_prefs.datasets kitchen_prefs.envs "
+        "kitchen_prefs.evaluation "
         "kitchen_prefs.metrics kitchen_prefs.rendering kitchen_prefs.splits kitchen_prefs.utils"
     ),
     "reinforcement": (
@@ -53,7 +55,7 @@ EXPERIMENTS = {
         "kitchen_prefs.metrics kitchen_prefs.simulation kitchen_prefs.utils"
     ),
     "paper": (
-        "lerobot_train recipes kitchen_prefs.datasets kitchen_prefs.evaluation "
+        "lerobot_train markdown recipes kitchen_prefs.datasets kitchen_prefs.evaluation "
         "kitchen_prefs.metrics kitchen_prefs.splits kitchen_prefs.utils"
     ),
     "__init__": "",

@@ -1,6 +1,7 @@
 """Trains and compares policies.
 
 recipes        the training recipes, YAML files
+markdown       tables in Markdown
 lerobot_train  runs of lerobot-train on a recipe
 quickstart     `kitchen-prefs quickstart`: from nothing to a scored policy
 reinforcement  `kitchen-prefs reinforce`: PPO from the environment's rewards

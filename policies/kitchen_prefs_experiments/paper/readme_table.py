@@ -2,6 +2,9 @@
 
 from collections.abc import Sequence
 
+from kitchen_prefs.metrics import Interval
+from kitchen_prefs_experiments.markdown import interval_cell, markdown_table
+
 BEGIN, END = "<!-- kitchen-prefs readme-table -->", "<!-- end of the table -->"
 ROWS = {
     "promptless": "`promptless`: exact posterior without a prompt (floor)",
@@ -41,14 +44,10 @@ def readme_table(scores: Sequence[dict]) -> str:
     lines = [
         [
             label,
-            *(_cell(found[name][split]["Score"]) for split in SPLITS),
-            _cell(found[name]["mean"]["Rescaled"]),
+            *(interval_cell(Interval(**found[name][split]["Score"])) for split in SPLITS),
+            interval_cell(Interval(**found[name]["mean"]["Rescaled"])),
         ]
         for name, label in ROWS.items()
         if name in found
     ]
-    return "\n".join(f"| {' | '.join(line)} |" for line in (head, ["---"] * len(head), *lines))
-
-
-def _cell(interval: dict[str, float]) -> str:
-    return f"{interval['mean']:.2f} [{interval['low']:.2f}, {interval['high']:.2f}]"
+    return markdown_table(head, lines)

@@ -8,8 +8,8 @@ numbers are equal become one sentence.
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
-from kitchen_prefs.metrics import Interval
 from kitchen_prefs.splits import TEST_SPLITS
+from kitchen_prefs_experiments.markdown import interval_cell, markdown_table
 from kitchen_prefs_experiments.paper.paper_tables import TABLES
 from kitchen_prefs_experiments.paper.result_files import (
     CurveResults,
@@ -51,7 +51,13 @@ def _overview(found: Mapping[str, PolicyResults | CurveResults], folder: Path) -
     for name in found:
         title, rows = TABLES[name].title, " · ".join(TABLES[name].rows)
         lines.append([f"[{title}]({name}.md)", rows, _evaluated_on(name)])
-    parts = ["# Results", *_prose(folder, OVERVIEW), "## The tables", _markdown(lines), HOW_TO_READ]
+    parts = [
+        "# Results",
+        *_prose(folder, OVERVIEW),
+        "## The tables",
+        markdown_table(lines[0], lines[1:]),
+        HOW_TO_READ,
+    ]
     if missing := [f"`{name}`" for name in TABLES if name not in found]:
         parts.append(
             f"Not run yet: {', '.join(missing)}. `kitchen-prefs reproduce TABLE` runs a table, and "
@@ -119,7 +125,8 @@ def _of_metric(table: Table, rows: dict[str, PolicyRow], metric: str) -> Iterato
     any_row = next(iter(groups_of.values()))
     groups = [group for group in table.groups if metric in any_row[group].metrics]
     lines = {
-        row: [_cell(of[group].metrics[metric]) for group in groups] for row, of in groups_of.items()
+        row: [interval_cell(of[group].metrics[metric]) for group in groups]
+        for row, of in groups_of.items()
     }
     constant = {row: cells[0] for row, cells in lines.items() if len({*cells}) == 1 < len(cells)}
     body = [[row, *cells] for row, cells in lines.items() if row not in constant]
@@ -128,7 +135,7 @@ def _of_metric(table: Table, rows: dict[str, PolicyRow], metric: str) -> Iterato
             body.append([label, *(_number(values.get(group)) for group in groups)])
     if body:
         head = ["", *(f"{group} ({any_row[group].episodes})" for group in groups)]
-        yield _markdown([head, *body])
+        yield markdown_table(head, body)
     if constant:
         cells = "; ".join(f"{row} {cell}" for row, cell in constant.items())
         yield f"The same in every column: {cells}."
@@ -143,10 +150,10 @@ def _by_metric(table: Table, rows: dict[str, PolicyRow]) -> str:
     lines = [[table.axis, *metrics, *papers]]
     for label, row in rows.items():
         means = row.groups[group].metrics
-        cells = [_cell(means[metric]) for metric in table.metrics]
+        cells = [interval_cell(means[metric]) for metric in table.metrics]
         values = [_number(of.get(label)) for of in table.paper_values.values()]
         lines.append([label, *cells, *values])
-    return _markdown(lines)
+    return markdown_table(lines[0], lines[1:])
 
 
 def _by_recipe(curves: Curves, rows: dict[str, CurveRow]) -> str:
@@ -155,10 +162,10 @@ def _by_recipe(curves: Curves, rows: dict[str, CurveRow]) -> str:
     lines = [["recipe", "steps", "minutes", "best step", *metrics]]
     for recipe, row in rows.items():
         (best,) = [point for point in row.points if point.step == row.best]
-        cells = [_cell(best.metrics[metric]) for metric in curves.drawn]
+        cells = [interval_cell(best.metrics[metric]) for metric in curves.drawn]
         minutes = f"{row.seconds / 60:.0f}"
         lines.append([f"`{recipe}`", f"{row.steps:,}", minutes, f"{best.step:,}", *cells])
-    return _markdown(lines)
+    return markdown_table(lines[0], lines[1:])
 
 
 def _how_made(name: str, results: PolicyResults | CurveResults) -> str:
@@ -188,15 +195,6 @@ def _prose(folder: Path, name: str) -> list[str]:
 
 def _joined(parts: list[str]) -> str:
     return "\n\n".join(parts) + "\n"
-
-
-def _markdown(lines: list[list[str]]) -> str:
-    header, *rows = lines
-    return "\n".join(f"| {' | '.join(line)} |" for line in (header, ["---"] * len(header), *rows))
-
-
-def _cell(interval: Interval) -> str:
-    return f"{interval.mean:.2f} [{interval.low:.2f}, {interval.high:.2f}]"
 
 
 def _number(value: float | None) -> str:

@@ -8,6 +8,7 @@ from kitchen_prefs.evaluation.evaluator import Summary
 from kitchen_prefs.splits import DATA_VERSION
 from kitchen_prefs.utils.files import write_json
 from kitchen_prefs_experiments.lerobot_train import LogEntry
+from kitchen_prefs_experiments.markdown import interval_cell, markdown_table
 
 COLUMNS = ("PE", "ED_c", "TE", "Score")
 COLOURS = {"all decisions": "#b5533c", "pick decisions": "#2f6f73", "place decisions": "#c9a13b"}
@@ -24,14 +25,13 @@ def write_table(summaries: dict[str, dict[str, Summary]], folder: Path) -> str:
         The table as Markdown; a cell is the mean and its 95 % interval.
     """
     header = ["split", "episodes", "policy", *COLUMNS]
-    lines = [_row(header), _row(["---"] * len(header))]
-    splits = list(next(iter(summaries.values())))
-    for split in splits:
+    rows = []
+    for split in next(iter(summaries.values())):
         for policy, of_policy in summaries.items():
             summary = of_policy[split]
-            cells = [_cell(summary, metric) for metric in COLUMNS]
-            lines.append(_row([split, str(summary.episodes), policy, *cells]))
-    table = "\n".join(lines) + "\n"
+            cells = [interval_cell(summary.metrics[metric]) for metric in COLUMNS]
+            rows.append([split, str(summary.episodes), policy, *cells])
+    table = markdown_table(header, rows) + "\n"
     (folder / "table.md").write_text(f"Data version {DATA_VERSION}.\n\n{table}")
     content = {
         policy: {
@@ -77,12 +77,3 @@ def _curves(steps: list[int], curves: dict[str, list[float]], title: str) -> alt
         )
         .properties(width=380, height=240)
     )
-
-
-def _row(cells: list[str]) -> str:
-    return f"| {' | '.join(cells)} |"
-
-
-def _cell(summary: Summary, metric: str) -> str:
-    interval = summary.metrics[metric]
-    return f"{interval.mean:.2f} [{interval.low:.2f}, {interval.high:.2f}]"
