@@ -4,6 +4,7 @@ from typing import Any
 
 import gymnasium
 import numpy as np
+from gymnasium.error import ResetNeeded
 
 from kitchen_prefs import instances
 from kitchen_prefs.envs.demonstrations import prompt_of
@@ -62,9 +63,6 @@ class DishwasherLoading(gymnasium.Env):
         prompts: The number n of demonstrations in a prompt.
         render_mode: None or "rgb_array".
 
-    Attributes:
-        simulator: The episode, from the last `reset` on.
-
     Raises:
         ValueError: If an argument is unknown.
     """
@@ -72,7 +70,6 @@ class DishwasherLoading(gymnasium.Env):
     metadata = {"render_modes": ["rgb_array"], "render_fps": 4}  # noqa: RUF012 (gymnasium's own form)
     _max_episode_steps = MAX_EPISODE_STEPS
     task = "kitchen_prefs"
-    simulator: EpisodeSimulator
 
     def __init__(
         self,
@@ -91,6 +88,7 @@ class DishwasherLoading(gymnasium.Env):
         self.render_mode = render_mode
         self.action_space = action_space()
         self.observation_space = observation_space(track, prompts)
+        self._simulator: EpisodeSimulator | None = None
         self._renderer: Any = None
 
     @property
@@ -116,7 +114,7 @@ class DishwasherLoading(gymnasium.Env):
         super().reset(seed=seed)
         index, salt = choose_session(self.split, seed, options or {}, lambda: self.np_random)
         session = make_session(self.split.name, index, salt)
-        self.simulator = EpisodeSimulator(session)
+        self._simulator = EpisodeSimulator(session)
         sources = prompt_sessions(session, self.prompt_of, self.prompts)
         self._prompt = np.concatenate([prompt_of(source) for source in sources])
         return self._observe(), self._info("", 0.0)
@@ -134,8 +132,11 @@ class DishwasherLoading(gymnasium.Env):
 
         Raises:
             ValueError: If the action has another shape or is not finite.
+            ResetNeeded: If the episode has not begun or has ended.
         """
         simulator = self.simulator
+        if simulator.terminated or simulator.truncated:
+            raise ResetNeeded("The episode has ended; call reset() before the next step().")
         instance, distance = simulator.choose(action)
         gained = reward(simulator.view, self.session.preference, instance)
         refusal = simulator.decide(instance, action)
@@ -159,6 +160,17 @@ class DishwasherLoading(gymnasium.Env):
         if self._renderer is not None:
             self._renderer.close()
             self._renderer = None
+
+    @property
+    def simulator(self) -> EpisodeSimulator:
+        """The episode, from the last `reset` on.
+
+        Raises:
+            ResetNeeded: If there is none.
+        """
+        if self._simulator is None:
+            raise ResetNeeded("The environment has no episode yet; call reset() first.")
+        return self._simulator
 
     @property
     def session(self) -> Session:

@@ -7,6 +7,7 @@ from gymnasium.spaces import Box, Dict, Space
 
 from kitchen_prefs import instances
 from kitchen_prefs.envs.observations import ENVIRONMENT_STATE_SIZE, STATE_SIZE
+from kitchen_prefs.simulation import layout
 
 
 def observation_space(track: str, prompts: int) -> Dict:
@@ -23,8 +24,13 @@ def observation_space(track: str, prompts: int) -> Dict:
 
 
 def action_space() -> Box:
-    """A pose: position (m) and quaternion (wxyz)."""
-    return _unbounded(7)
+    """A pose: position (m) in the kitchen's workspace and quaternion (wxyz).
+
+    The environment carries out actions beyond these bounds too, as the nearest row; libraries
+    such as Stable-Baselines3 ask for bounds.
+    """
+    low, high = (*layout.WORKSPACE_LOW, -1, -1, -1, -1), (*layout.WORKSPACE_HIGH, 1, 1, 1, 1)
+    return Box(np.array(low, np.float32), np.array(high, np.float32), dtype=np.float32)
 
 
 def _unbounded(*shape: int) -> Box:

@@ -48,3 +48,8 @@ RACK_HEADROOM = 0.30  # what stands higher above the floor stops the rack from c
 DOOR_SIZE = (0.596, 0.05, 0.74)
 DOOR_HINGE = (0.0, 0.0, 0.12)  # its axis runs along x
 DOOR_OPEN_ANGLE = pi / 2
+
+# All poses that a decision may choose lie in between: along the counter, from the edge of the open
+# door to the wall, from the floor to the tallest dish on the counter.
+WORKSPACE_LOW = (COUNTER_X[0], -DOOR_SIZE[2], 0.0)
+WORKSPACE_HIGH = (COUNTER_X[1], COUNTER_Y[1], COUNTER_HEIGHT + max(z for _, _, z in EXTENTS.values()))

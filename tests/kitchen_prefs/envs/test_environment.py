@@ -1,9 +1,13 @@
 """The environment through gymnasium's and LeRobot's public entries."""
 
 import gymnasium
+import numpy as np
 import pytest
 from expert_rollout import roll_out_expert
+from gymnasium.error import ResetNeeded
 from gymnasium.utils.env_checker import check_env
+from stable_baselines3 import PPO
+from stable_baselines3.common.env_checker import check_env as check_stable_baselines3
 
 from kitchen_prefs import instances
 from kitchen_prefs.envs.environment import MAX_EPISODE_STEPS, TASK, DishwasherLoading
@@ -70,6 +74,63 @@ def test_it_ends_at_twice_the_experts_decisions():
         assert "door open" in info["refusal"]
         assert truncated == (step == limit)
     assert env.episode().longest_loop == limit
+
+
+def test_a_step_after_the_end_is_refused_and_changes_nothing():
+    env = DishwasherLoading("seen")
+    observation, _ = env.reset(options={"session": 3})
+    first = env.simulator.expert_action()
+    list(roll_out_expert(env, observation))
+    episode, digest = env.episode(), env.digest()
+    with pytest.raises(ResetNeeded, match=r"ended; call reset\(\)"):
+        env.step(first)
+    assert (env.episode(), env.digest()) == (episode, digest)
+    env.reset(options={"session": 3})
+    assert not env.step(first)[2]
+
+
+def test_a_truncated_episode_has_ended_too():
+    env = DishwasherLoading("seen")
+    observation, _ = env.reset(seed=0)
+    rack = pose_of(env, observation, BOTTOM_RACK)
+    while not env.step(rack)[3]:
+        pass
+    with pytest.raises(ResetNeeded):
+        env.step(rack)
+
+
+@pytest.mark.parametrize(
+    "query",
+    [
+        lambda env: env.step(np.zeros(7)),
+        lambda env: env.episode(),
+        lambda env: env.digest(),
+        lambda env: env.session,
+        lambda env: env.scene(),
+        lambda env: env.simulator.expert_action(),
+        lambda env: env.simulator.feasible_rows(),
+    ],
+)
+def test_nothing_can_be_asked_before_reset(query):
+    with pytest.raises(ResetNeeded, match=r"no episode yet; call reset\(\) first"):
+        query(DishwasherLoading())
+
+
+@pytest.mark.parametrize("split", ["seen", "noisy", "unseen_both"])
+def test_every_choosable_pose_lies_within_the_bounds_of_actions(split):
+    env = DishwasherLoading(split)
+    assert np.isfinite((env.action_space.low, env.action_space.high)).all()
+    observation, _ = env.reset(seed=0)
+    for _, (observation, *_rest) in roll_out_expert(env, observation):
+        rows = instances.unpad(observation["instances"])
+        for pose in rows[instances.choosable(rows), instances.POSE]:
+            assert env.action_space.contains(pose.astype(np.float32))
+
+
+def test_plain_stable_baselines3_trains():
+    env = gymnasium.make("kitchen_prefs/DishwasherLoading-v0")
+    check_stable_baselines3(env, warn=False, skip_render_check=True)
+    PPO("MultiInputPolicy", env, n_steps=8, batch_size=8, n_epochs=1, device="cpu").learn(8)
 
 
 @pytest.mark.slow
