@@ -6,7 +6,7 @@ pretrained_model/
     policy_preprocessor.json  its pipelines, with their statistics in .safetensors files
     policy_postprocessor.json
 
-`lerobot-train` writes such a folder for each checkpoint.
+`lerobot-train` writes such a folder for each checkpoint; for an adapter, see `adapter_reading`.
 """
 
 import json
@@ -25,6 +25,12 @@ from lerobot.processor import PolicyProcessorPipeline, ProcessorStepRegistry
 from lerobot.processor.pipeline import ProcessorMigrationError
 from safetensors import SafetensorError
 
+from kitchen_prefs.evaluation.adapter_reading import (
+    ADAPTER_WEIGHTS,
+    is_adapter,
+    policy_below,
+    read_adapted_policy,
+)
 from kitchen_prefs.utils.suggestions import check_settings, suggest
 
 CONFIG = "config.json"
@@ -62,7 +68,7 @@ def find_checkpoint(path: str) -> Path:
             raise ValueError(f"{nowhere}, or a policy's name on the hub.") from error
     if not (folder / CONFIG).is_file():
         raise ValueError(f"{nowhere}.")
-    for name in (WEIGHTS, *PROCESSORS):
+    for name in (_weights_of(folder), *PROCESSORS):
         if not (folder / name).is_file():
             raise ValueError(f"The checkpoint {folder} lacks {name}; {ADVICE}")
     return folder
@@ -97,20 +103,39 @@ def setting_names(config_class: type[PreTrainedConfig]) -> list[str]:
     return [field.name for field in fields(config_class)]
 
 
-def read_policy(folder: Path, config: PreTrainedConfig) -> PreTrainedPolicy:
+def read_policy(
+    folder: Path, config: PreTrainedConfig, options: Sequence[str] = ()
+) -> PreTrainedPolicy:
     """Load the policy of a checkpoint; unlike in LeRobot's factory, no weight may be missing.
+
+    Args:
+        folder: The checkpoint.
+        config: Its settings.
+        options: Those of them that were overridden.
 
     Raises:
         ValueError: If the weights are damaged or do not fit the policy.
     """
     try:
+        if is_adapter(folder):
+            below = find_checkpoint(policy_below(folder))
+            return read_adapted_policy(folder, below, config)
         return get_policy_class(config.type).from_pretrained(folder, config=config, strict=True)
     except SafetensorError as error:
-        raise ValueError(f"{folder / WEIGHTS} is damaged; {ADVICE}") from error
+        raise ValueError(f"{folder / _weights_of(folder)} is damaged; {ADVICE}") from error
     except RuntimeError as error:  # torch's, for weights of other names or shapes
+        if options:
+            raise ValueError(
+                f"The weights in {folder} do not fit with {' '.join(options)}; leave out what "
+                "changes the size of the policy."
+            ) from error
         raise ValueError(
             f"The weights in {folder} do not fit the config.json beside them; {ADVICE}"
         ) from error
+
+
+def _weights_of(folder: Path) -> str:
+    return ADAPTER_WEIGHTS if is_adapter(folder) else WEIGHTS
 
 
 def read_processors(

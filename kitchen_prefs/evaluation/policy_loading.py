@@ -28,15 +28,18 @@ from kitchen_prefs.evaluation.checkpoint_reading import (
 )
 from kitchen_prefs.utils.suggestions import check_settings, suggest
 
-# Settings that do not change what a policy does: where it runs and where it is stored.
+# Settings that do not change what a policy does: where it runs, where it is stored, and what would
+# train it further.
 NOT_BEHAVIOUR = (
     "device",
     "license",
+    "optimizer",
     "pretrained_path",
     "pretrained_revision",
     "private",
     "push_to_hub",
     "repo_id",
+    "scheduler",
     "tags",
 )
 
@@ -140,7 +143,8 @@ def _trained(folder: Path, options: Sequence[str], track: str | None) -> LoadedP
     environment = _environment(config, track)
     _check_features(config, environment)
     preprocessor, postprocessor = read_processors(folder, config)
-    return LoadedPolicy(read_policy(folder, config), preprocessor, postprocessor, environment.track)
+    policy = read_policy(folder, config, options)
+    return LoadedPolicy(policy, preprocessor, postprocessor, environment.track)
 
 
 def _untrained(policy_type: str, options: Sequence[str], track: str | None) -> LoadedPolicy:

@@ -52,4 +52,5 @@ DOOR_OPEN_ANGLE = pi / 2
 # All poses that a decision may choose lie in between: along the counter, from the edge of the open
 # door to the wall, from the floor to the tallest dish on the counter.
 WORKSPACE_LOW = (COUNTER_X[0], -DOOR_SIZE[2], 0.0)
-WORKSPACE_HIGH = (COUNTER_X[1], COUNTER_Y[1], COUNTER_HEIGHT + max(z for _, _, z in EXTENTS.values()))
+TALLEST_DISH = max(z for _, _, z in EXTENTS.values())
+WORKSPACE_HIGH = (COUNTER_X[1], COUNTER_Y[1], COUNTER_HEIGHT + TALLEST_DISH)

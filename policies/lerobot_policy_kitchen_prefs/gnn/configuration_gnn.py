@@ -3,11 +3,12 @@
 from dataclasses import dataclass, field
 
 from lerobot.configs import FeatureType, NormalizationMode, PolicyFeature, PreTrainedConfig
-from lerobot.optim import AdamConfig
+from lerobot.optim import AdamConfig, LRSchedulerConfig, OptimizerConfig
 
 from kitchen_prefs.envs.lerobot_env import OBS_PREFERENCE
 
 from ..common.lerobot_features import check_sets_and_poses
+from ..common.training_presets import check_one_optimizer
 
 
 @PreTrainedConfig.register_subclass("gnn")
@@ -34,6 +35,9 @@ class GNNConfig(PreTrainedConfig):
         recognise: Whether observations are denoised by snapping to known extents and poses.
         sample: Whether acting samples a row by its probability, as PPO does in training, instead
             of taking the most probable one.
+        optimizer: What trains the policy, and trained a checkpoint; None is the paper's optimiser,
+            which the fields `optimizer_...` describe.
+        scheduler: The schedule that belongs to `optimizer`; None keeps its learning rate.
     """
 
     normalization_mapping: dict[str, NormalizationMode] = field(
@@ -60,9 +64,12 @@ class GNNConfig(PreTrainedConfig):
     # Training preset (paper, appendix "Baseline: GNN").
     optimizer_lr: float = 0.01
     optimizer_weight_decay: float = 1e-3
+    optimizer: OptimizerConfig | None = None
+    scheduler: LRSchedulerConfig | None = None
 
     def __post_init__(self) -> None:
         super().__post_init__()
+        check_one_optimizer(self)
         for name, choices in (
             ("encoding", ("linear", "fourier")),
             ("readout", ("linear", "pointer")),
@@ -80,13 +87,14 @@ class GNNConfig(PreTrainedConfig):
         """The track whose observations the policy needs; `kitchen-prefs evaluate` reads it."""
         return "privileged"
 
-    def get_optimizer_preset(self) -> AdamConfig:
-        """The paper's optimiser."""
-        return AdamConfig(lr=self.optimizer_lr, weight_decay=self.optimizer_weight_decay)
+    def get_optimizer_preset(self) -> OptimizerConfig:
+        """The optimiser that trained the checkpoint, or else the paper's."""
+        paper = AdamConfig(lr=self.optimizer_lr, weight_decay=self.optimizer_weight_decay)
+        return self.optimizer or paper
 
-    def get_scheduler_preset(self) -> None:
-        """The paper names no schedule."""
-        return None
+    def get_scheduler_preset(self) -> LRSchedulerConfig | None:
+        """The schedule of `optimizer`; the paper names none."""
+        return self.scheduler
 
     def validate_features(self) -> None:
         """Check that the inputs contain sets of instances and the outputs poses.

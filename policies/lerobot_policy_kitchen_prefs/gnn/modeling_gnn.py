@@ -3,6 +3,7 @@
 Its input contains the preference's true label: the privileged track.
 """
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -23,6 +24,7 @@ from ..common.denoising import Denoiser
 from ..common.failed_choices import FailedChoices, synthesise_failures
 from ..common.instance_sets import accuracies, chosen_rows
 from ..common.lerobot_features import observed
+from ..common.weight_loading import misfit_in_a_sentence
 from .configuration_gnn import GNNConfig
 from .network import GNNetwork, RowScores
 
@@ -62,9 +64,28 @@ class GNNPolicy(PreTrainedPolicy):
                 self.recognition.fit(demonstrations)
         self.reset()
 
+    @classmethod
+    def from_pretrained(cls, pretrained_name_or_path: str | Path, **options: Any) -> "GNNPolicy":
+        """Load a checkpoint, see LeRobot's `PreTrainedPolicy.from_pretrained`.
+
+        Raises:
+            RuntimeError: If its weights do not fit the settings.
+        """
+        with misfit_in_a_sentence(pretrained_name_or_path):
+            return super().from_pretrained(pretrained_name_or_path, **options)
+
     def get_optim_params(self) -> list[nn.Parameter]:
         """All parameters, in one group."""
         return list(self.parameters())
+
+    def _get_default_peft_targets(self) -> dict[str, Any]:
+        """Where LeRobot puts adapters by default: all linear maps of nodes but the attention's.
+
+        PEFT cannot adapt torch-geometric's own linear layer in the attention.
+        """
+        layers = r"inputs\.project|layers\.\d+\.(skip|feedforward\.[02])"
+        targets = rf"network\.({layers}|readout\.(query|key|score))"
+        return {"target_modules": targets, "modules_to_save": []}
 
     # Training --------------------------------------------------------------------------------
 

@@ -4,11 +4,12 @@ from dataclasses import dataclass, field
 from typing import Any, Self
 
 from lerobot.configs import NormalizationMode, PreTrainedConfig
-from lerobot.optim import SGDConfig
+from lerobot.optim import LRSchedulerConfig, OptimizerConfig, SGDConfig
 
 from kitchen_prefs.instances import DECISION, EXTENTS, POSE
 
 from ..common.lerobot_features import check_sets_and_poses
+from ..common.training_presets import check_one_optimizer
 from .scheduler import ExponentialDecaySchedulerConfig
 
 # The columns of each attribute.
@@ -62,6 +63,9 @@ class TTPConfig(PreTrainedConfig):
         failures: Whether the network sees which choices have just failed.
         recognise: Whether observations are denoised by snapping to known extents and poses.
         dtype: "float32", or "bfloat16" for LeRobot's mixed precision in training.
+        optimizer: What trains the policy, and trained a checkpoint; None is the paper's optimiser,
+            which the fields `optimizer_...` describe.
+        scheduler: The schedule that belongs to `optimizer`; None keeps its learning rate.
     """
 
     normalization_mapping: dict[str, NormalizationMode] = field(
@@ -111,9 +115,12 @@ class TTPConfig(PreTrainedConfig):
     optimizer_momentum: float = 0.9
     optimizer_dampening: float = 0.1
     optimizer_weight_decay: float = 1e-4
+    optimizer: OptimizerConfig | None = None
+    scheduler: LRSchedulerConfig | None = None
 
     def __post_init__(self) -> None:
         super().__post_init__()
+        check_one_optimizer(self)
         for name, choices in (
             ("prompt_tokens", ("states", "chosen", "final")),
             ("pose_encoding", ("fourier", "linear")),
@@ -185,18 +192,18 @@ class TTPConfig(PreTrainedConfig):
         """The size d of an instance's embedding."""
         return self.dim_pose + self.dim_extents + self.dim_time + self.dim_marker
 
-    def get_optimizer_preset(self) -> SGDConfig:
-        """The paper's optimiser."""
-        return SGDConfig(
+    def get_optimizer_preset(self) -> OptimizerConfig:
+        """The optimiser that trained the checkpoint, or else the paper's."""
+        return self.optimizer or SGDConfig(
             lr=self.optimizer_lr,
             momentum=self.optimizer_momentum,
             dampening=self.optimizer_dampening,
             weight_decay=self.optimizer_weight_decay,
         )
 
-    def get_scheduler_preset(self) -> ExponentialDecaySchedulerConfig:
-        """The paper's schedule: 0.9995 per 10 updates."""
-        return ExponentialDecaySchedulerConfig()
+    def get_scheduler_preset(self) -> LRSchedulerConfig | None:
+        """The schedule of `optimizer`, or else the paper's: 0.9995 per 10 updates."""
+        return self.scheduler if self.optimizer else ExponentialDecaySchedulerConfig()
 
     def validate_features(self) -> None:
         """Check that the inputs contain sets of instances and the outputs poses.

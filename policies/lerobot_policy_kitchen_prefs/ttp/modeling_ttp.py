@@ -1,5 +1,6 @@
 """TTP as a LeRobot policy: prompt-situation pairs in training, one prompt an episode at rollout."""
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -19,6 +20,7 @@ from ..common.denoising import Denoiser
 from ..common.failed_choices import FailedChoices, synthesise_failures
 from ..common.instance_sets import accuracies, chosen_rows, length_buckets
 from ..common.lerobot_features import observed
+from ..common.weight_loading import misfit_in_a_sentence
 from .compact_network import CompactNetwork
 from .configuration_ttp import TTPConfig
 from .context_history import ContextHistory, split_history
@@ -65,9 +67,23 @@ class TTPPolicy(PreTrainedPolicy):
                 self.recognition.fit(self.demonstrations)
         self.reset()
 
+    @classmethod
+    def from_pretrained(cls, pretrained_name_or_path: str | Path, **options: Any) -> "TTPPolicy":
+        """Load a checkpoint, see LeRobot's `PreTrainedPolicy.from_pretrained`.
+
+        Raises:
+            RuntimeError: If its weights do not fit the settings.
+        """
+        with misfit_in_a_sentence(pretrained_name_or_path):
+            return super().from_pretrained(pretrained_name_or_path, **options)
+
     def get_optim_params(self) -> list[nn.Parameter]:
         """All parameters, in one group."""
         return list(self.parameters())
+
+    def _get_default_peft_targets(self) -> dict[str, Any]:
+        """Where LeRobot puts adapters by default: the projections of all attention layers."""
+        return {"target_modules": r".*attention\.(query|key_value|output)", "modules_to_save": []}
 
     # Training --------------------------------------------------------------------------------
 

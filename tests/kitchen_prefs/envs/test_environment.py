@@ -120,8 +120,8 @@ def test_nothing_can_be_asked_before_reset(query):
 def test_every_choosable_pose_lies_within_the_bounds_of_actions(split):
     env = DishwasherLoading(split)
     assert np.isfinite((env.action_space.low, env.action_space.high)).all()
-    observation, _ = env.reset(seed=0)
-    for _, (observation, *_rest) in roll_out_expert(env, observation):
+    start, _ = env.reset(seed=0)
+    for _, (observation, *_rest) in roll_out_expert(env, start):
         rows = instances.unpad(observation["instances"])
         for pose in rows[instances.choosable(rows), instances.POSE]:
             assert env.action_space.contains(pose.astype(np.float32))

@@ -119,3 +119,9 @@ def test_weights_that_do_not_fit_their_config_are_refused(tmp_path):
     (checkpoint / "config.json").write_text(json.dumps(config | {"dim_model": 32}))
     with pytest.raises(ValueError, match="do not fit the config"):
         load_policy(str(checkpoint))
+
+
+def test_an_override_that_does_not_fit_the_weights_is_named(tmp_path):
+    checkpoint = save_act(tmp_path / "checkpoint")
+    with pytest.raises(ValueError, match="do not fit with --dim_model=32; leave out"):
+        load_policy(str(checkpoint), options=["--dim_model=32"])

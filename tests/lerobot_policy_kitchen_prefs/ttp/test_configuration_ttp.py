@@ -6,10 +6,13 @@ from pathlib import Path
 import pytest
 import yaml
 from lerobot.configs import FeatureType, PolicyFeature
+from lerobot.optim import AdamWConfig
 
 from kitchen_prefs.instances import CAPACITY
+from lerobot_policy_kitchen_prefs.gnn import GNNConfig
 from lerobot_policy_kitchen_prefs.ttp import TTPPolicy
 from lerobot_policy_kitchen_prefs.ttp.configuration_ttp import TTPConfig
+from lerobot_policy_kitchen_prefs.ttp.scheduler import ExponentialDecaySchedulerConfig
 
 RECIPES = Path(__file__).parents[3] / "policies/recipes"
 
@@ -54,7 +57,7 @@ def recipe(name):
     return {
         key: value
         for key, value in settings.items()
-        if key not in ("type", "device", "push_to_hub", "dtype")
+        if key not in ("type", "device", "push_to_hub", "dtype", "optimizer", "scheduler")
     }
 
 
@@ -64,6 +67,25 @@ def recipe(name):
 )
 def test_the_named_configurations_are_those_of_the_recipes(config, name):
     assert asdict(config(device="cpu")) == asdict(TTPConfig(device="cpu", **recipe(name)))
+
+
+@pytest.mark.parametrize("name", ["ttp_paper", "ttp_quick", "ttp_final", "gnn_paper", "gnn_tuned"])
+def test_a_recipe_saves_its_own_optimiser_as_the_preset_at_a_tenth_of_the_learning_rate(name):
+    recipe = yaml.safe_load((RECIPES / f"{name}.yaml").read_text())
+    trains, preset = recipe["optimizer"], recipe["policy"]["optimizer"]
+    assert preset["lr"] == pytest.approx(trains["lr"] / 10)
+    assert preset | {"lr": 0} == trains | {"lr": 0}
+
+
+@pytest.mark.parametrize("config", [TTPConfig, GNNConfig])
+def test_an_optimiser_is_the_preset_and_the_papers_settings_beside_it_are_refused(config):
+    adamw = AdamWConfig(lr=0.5)
+    assert config(device="cpu", optimizer=adamw).get_optimizer_preset() is adamw
+    assert config(device="cpu", optimizer=adamw).get_scheduler_preset() is None
+    with pytest.raises(ValueError, match=r"adamw, so optimizer_lr has no effect; .*optimizer\.lr"):
+        config(device="cpu", optimizer=adamw, optimizer_lr=0.1)
+    with pytest.raises(ValueError, match="A scheduler belongs to an optimizer"):
+        config(device="cpu", scheduler=ExponentialDecaySchedulerConfig())
 
 
 def test_a_named_configuration_takes_changes():

@@ -1,0 +1,78 @@
+"""Committed checkpoints, trained further with LeRobot's defaults, do not forget what they know."""
+
+from itertools import islice
+from pathlib import Path
+
+import pytest
+import torch
+from lerobot.configs import PreTrainedConfig
+from lerobot.configs.default import DatasetConfig
+from lerobot.configs.train import TrainPipelineConfig
+from lerobot.datasets import make_dataset
+from lerobot.optim.factory import make_optimizer_and_scheduler
+from lerobot.policies import make_policy, make_pre_post_processors
+from lerobot.utils.import_utils import is_package_available
+from torch.utils.data import DataLoader
+
+import kitchen_prefs.datasets
+
+CHECKPOINTS = sorted((Path(__file__).parents[2] / "policies/checkpoints").glob("*/config.json"))
+DATASET = "dishwasher-train-p7-d6-v1"
+STEPS, BATCH_SIZE = 30, 8  # LeRobot's default batch size
+
+
+@pytest.fixture(scope="session")
+def data_root(made_once):
+    def fill(folder):
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setenv("HF_LEROBOT_HOME", str(folder))
+            kitchen_prefs.datasets.make_dataset(DATASET)
+
+    return made_once("fine_tuning_data", fill) / "kitchen_prefs" / DATASET
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("folder", [file.parent for file in CHECKPOINTS], ids=lambda f: f.name)
+def test_default_steps_at_most_double_the_loss_on_a_fixed_batch(folder, data_root):
+    config = PreTrainedConfig.from_pretrained(folder)
+    if config.type == "diffusion" and not is_package_available("diffusers"):
+        pytest.skip("needs the extra diffusion")
+    config.pretrained_path = folder
+    data = DatasetConfig(f"kitchen_prefs/{DATASET}", root=str(data_root))
+    training = TrainPipelineConfig(data, policy=config, steps=STEPS, batch_size=BATCH_SIZE)
+    training.optimizer = config.get_optimizer_preset()
+    training.scheduler = config.get_scheduler_preset()
+    dataset = make_dataset(training)
+    policy = make_policy(config, ds_meta=dataset.meta)
+    preprocess, _ = make_pre_post_processors(config, str(folder))
+    torch.manual_seed(0)
+    loader = DataLoader(dataset, BATCH_SIZE, shuffle=True, drop_last=True)
+    fixed, *batches = map(preprocess, islice(loader, 1 + STEPS))
+
+    before = loss_of(policy, fixed)
+    train(policy, batches, training)
+    assert loss_of(policy, fixed) <= 2 * before
+
+
+def loss_of(policy, batch):
+    """The loss on a batch; every call draws the same noise."""
+    policy.eval()
+    torch.manual_seed(0)
+    with torch.no_grad():
+        return policy.forward(batch)[0].item()
+
+
+def train(policy, batches, training):
+    """Train as lerobot-train does."""
+    optimizer, scheduler = make_optimizer_and_scheduler(training, policy)
+    policy.train()
+    for batch in batches:
+        with torch.autocast("cpu", enabled=getattr(policy.config, "dtype", "") == "bfloat16"):
+            loss, _ = policy.forward(batch)
+        loss.backward()
+        limit = training.optimizer.grad_clip_norm
+        torch.nn.utils.clip_grad_norm_(policy.parameters(), limit)
+        optimizer.step()
+        optimizer.zero_grad()
+        if scheduler:
+            scheduler.step()
