@@ -44,6 +44,15 @@ class Split:
         """How many sessions there are."""
         return len(self.users)
 
+    @property
+    def tasks(self) -> dict[int, tuple[int, ...]]:
+        """The sessions of each of the twelve preferences, by its label; 12: those of all others."""
+        labels = [min(user, OTHER_USERS[0]) for user in self.users]
+        return {
+            label: tuple(session for session, own in enumerate(labels) if own == label)
+            for label in sorted(set(labels))
+        }
+
     def count(self, index: int) -> int:
         """How many dishes per rack session `index` wants."""
         return self.counts[index % len(self.counts)]

@@ -71,6 +71,10 @@ LEADERBOARD = {
         "replay submission_format submission_reading kitchen_prefs.datasets "
         "kitchen_prefs.metrics kitchen_prefs.splits"
     ),
+    "recording_reading": (
+        "kitchen_prefs.envs kitchen_prefs.instances kitchen_prefs.metrics "
+        "kitchen_prefs.simulation kitchen_prefs.splits"
+    ),
     "policy_runs": (
         "submission_format kitchen_prefs.evaluation kitchen_prefs.metrics "
         "kitchen_prefs.splits kitchen_prefs.utils"
@@ -91,8 +95,9 @@ LEADERBOARD = {
         "kitchen_prefs.simulation kitchen_prefs.splits kitchen_prefs.utils"
     ),
     "commands": (
-        "hub_upload page policy_runs ranking score_formats scoring submission_format "
-        "submission_writing verification kitchen_prefs.evaluation kitchen_prefs.utils"
+        "hub_upload page policy_runs ranking recording_reading score_formats scoring "
+        "submission_format submission_writing verification kitchen_prefs.evaluation "
+        "kitchen_prefs.utils"
     ),
     "__init__": "",
 }

@@ -46,7 +46,7 @@ def read_manifest(name: str, root: Path) -> dict:
     Raises:
         ValueError: If the data set is incomplete, damaged, or of another version.
     """
-    way_out = f"delete the folder {root} and ask for the data set again."
+    way_out = _way_out(root)
     damaged = f"The data set {name} is damaged ({{}} is not as written); {way_out}"
     if not (root / MANIFEST).is_file():
         raise ValueError(f"The data set {name} is incomplete; {way_out}")
@@ -62,6 +62,17 @@ def read_manifest(name: str, root: Path) -> dict:
     if wrong:
         raise ValueError(damaged.format(wrong[0]))
     return manifest
+
+
+def _way_out(root: Path) -> str:
+    """What to do about a data set that is not as it was written."""
+    before = root.with_name(f"{root.name}_old")  # lerobot-edit-dataset moves the data set there
+    if before.is_dir():
+        return (
+            f"an edit in place that failed left it in {before}; delete the folder {root} and move "
+            f"{before} back there."
+        )
+    return f"delete the folder {root} and ask for the data set again."
 
 
 def published_fingerprint(name: str) -> str | None:

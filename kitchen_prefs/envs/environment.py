@@ -1,5 +1,6 @@
 """The gymnasium environment: load the dishwasher as the user of the prompt does."""
 
+from collections.abc import Sequence
 from typing import Any
 
 import gymnasium
@@ -15,7 +16,7 @@ from kitchen_prefs.envs.spaces import action_space, observation_space
 from kitchen_prefs.metrics import Episode, success
 from kitchen_prefs.rendering.state import SceneState, scene_of
 from kitchen_prefs.simulation.sessions import Session, make_session, prompt_sessions
-from kitchen_prefs.splits import get_split
+from kitchen_prefs.splits import Split, get_split
 from kitchen_prefs.utils.suggestions import suggest
 
 TRACKS = ("standard", "privileged", "language")
@@ -61,6 +62,8 @@ class DishwasherLoading(gymnasium.Env):
             label, "language" gives the preference in words as `task_description`.
         prompt_of: "same", or "other" for a prompt of another preference (the metric prompt use).
         prompts: The number n of demonstrations in a prompt.
+        task_id: The label of the preference whose sessions alone are simulated, as `Split.tasks`
+            has them; None for all sessions of the split.
         render_mode: None or "rgb_array".
 
     Raises:
@@ -77,11 +80,13 @@ class DishwasherLoading(gymnasium.Env):
         track: str = "standard",
         prompt_of: str = "same",
         prompts: int = 1,
+        task_id: int | None = None,
         render_mode: str | None = None,
     ) -> None:
         if track not in TRACKS:
             raise ValueError(f"There is no track {track!r}. {suggest(track, TRACKS)}")
         self.split = get_split(split)
+        self._sessions = _sessions_of(self.split, task_id)
         self.track = track
         self.prompt_of = prompt_of
         self.prompts = prompts
@@ -102,7 +107,7 @@ class DishwasherLoading(gymnasium.Env):
         """Start a session; `session_choice.choose_session` says which.
 
         Args:
-            seed: Starts session `seed` modulo the split's size.
+            seed: Starts session `seed` modulo the number of sessions.
             options: `{"session": i, "salt": k}` starts session i with session seed (salt) k.
 
         Returns:
@@ -112,7 +117,7 @@ class DishwasherLoading(gymnasium.Env):
             ValueError: If there is no such option or session.
         """
         super().reset(seed=seed)
-        index, salt = choose_session(self.split, seed, options or {}, lambda: self.np_random)
+        index, salt = choose_session(self._sessions, seed, options or {}, lambda: self.np_random)
         session = make_session(self.split.name, index, salt)
         self._simulator = EpisodeSimulator(session)
         sources = prompt_sessions(session, self.prompt_of, self.prompts)
@@ -209,3 +214,13 @@ class DishwasherLoading(gymnasium.Env):
             "distance": distance,
             "session": self.session.index,
         }
+
+
+def _sessions_of(split: Split, task_id: int | None) -> Sequence[int]:
+    if task_id is None:
+        return range(split.sessions)
+    if task_id not in split.tasks:
+        raise ValueError(
+            f"The split {split.name} has no task {task_id}; it has {sorted(split.tasks)}."
+        )
+    return split.tasks[task_id]

@@ -1,11 +1,10 @@
 """Which session a `reset()` starts."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
 
-from kitchen_prefs.splits import Split
 from kitchen_prefs.utils.suggestions import suggest
 
 RESET_OPTIONS = ("session", "salt")
@@ -15,7 +14,7 @@ FRESH_SALTS = 2**31  # an unseeded reset draws its salt below this, never the pu
 
 
 def choose_session(
-    split: Split,
+    sessions: Sequence[int],
     seed: int | None,
     options: dict[str, Any],
     generator: Callable[[], np.random.Generator],
@@ -27,8 +26,8 @@ def choose_session(
     given, and then it is a fresh session, which no published split has.
 
     Args:
-        split: The environment's split.
-        seed: The seed of `reset()`; it names a session of the split, modulo its size.
+        sessions: The sessions of the environment, as their split counts them.
+        seed: The seed of `reset()`; it names one of the sessions, modulo their number.
         options: The options of `reset()`: a session's index and a salt.
         generator: Gives the environment's generator, which is used if nothing names a session.
 
@@ -39,10 +38,10 @@ def choose_session(
     if "session" in options:
         return int(options["session"]), int(options.get("salt", 0))
     if seed is not None:
-        return seed % split.sessions, int(options.get("salt", 0))
+        return sessions[seed % len(sessions)], int(options.get("salt", 0))
     random = generator()
     salt = options["salt"] if "salt" in options else random.integers(1, FRESH_SALTS)
-    return int(random.integers(split.sessions)), int(salt)
+    return sessions[int(random.integers(len(sessions)))], int(salt)
 
 
 def _check_options(options: dict[str, Any]) -> None:

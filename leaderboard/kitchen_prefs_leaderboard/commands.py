@@ -60,12 +60,18 @@ def submit(
             help="The data and the number of steps.", show_default="from train_config.json"
         ),
     ] = None,
+    recordings: Annotated[
+        Path | None,
+        typer.Option("--from", help="Recordings of lerobot-eval, instead of rolling out."),
+    ] = None,
     jobs: Jobs = CORES,
 ) -> None:
     """Roll a policy out on the test splits and write its actions as a submission.
 
     The episodes are kept in OUT-episodes, so a command that was killed resumes.
     Any other --policy.SETTING=VALUE overrides a setting of the policy.
+    With --from=DIR the actions are those that `lerobot-eval --env.type=kitchen_prefs
+    --env.task=SPLIT --eval.recording=true --output_dir=DIR/SPLIT` recorded on each test split.
 
     For example:
     kitchen-prefs leaderboard submit --name="My TTP" --track=standard --out=outputs/my_ttp
@@ -86,7 +92,12 @@ def submit(
         hardware=hardware,
         training=training or (submission_writing.training_of(path) if path else UNSPECIFIED),
     )
-    episodes = policy.roll_out(out.with_name(f"{out.name}-episodes"), salt=0, jobs=jobs)
+    if recordings:
+        from kitchen_prefs_leaderboard.recording_reading import read_recordings
+
+        episodes = read_recordings(recordings)
+    else:
+        episodes = policy.roll_out(out.with_name(f"{out.name}-episodes"), salt=0, jobs=jobs)
     submission_writing.write_submission(submission, episodes, out)
     typer.echo(f"The submission is {out}. `kitchen-prefs leaderboard score {out}` scores it.")
 
@@ -105,9 +116,11 @@ def score(
     kitchen-prefs leaderboard score leaderboard/submissions/* --format=csv --by=count
     """
     from kitchen_prefs_leaderboard import score_formats
-    from kitchen_prefs_leaderboard.scoring import score_submissions
+    from kitchen_prefs_leaderboard.scoring import score_submissions, shared_checkpoints
 
     entries = score_submissions(folders, jobs)
+    for sentence in shared_checkpoints(entries):
+        typer.echo(sentence, err=True)
     if form is Form.TABLE:
         for entry in entries:
             console.print(*score_formats.to_tables(entry, by), sep="\n")
@@ -186,13 +199,16 @@ def page(
     make_folder(out.parent, "--out")
     from kitchen_prefs_leaderboard.page.building import write_page
     from kitchen_prefs_leaderboard.ranking import rank
-    from kitchen_prefs_leaderboard.scoring import score_submissions
+    from kitchen_prefs_leaderboard.scoring import score_submissions, shared_checkpoints
     from kitchen_prefs_leaderboard.verification import read_verifications
 
     if verifications != KEPT and not verifications.is_dir():
         raise ValueError(f"There is no folder {verifications}; give another --verifications.")
     verified = read_verifications(verifications)
-    write_page(rank(score_submissions(folders, jobs), verified), out)
+    entries = score_submissions(folders, jobs)
+    for sentence in shared_checkpoints(entries):
+        typer.echo(sentence, err=True)
+    write_page(rank(entries, verified), out)
     typer.echo(f"The page is {out}; a browser opens it without a server.")
 
 

@@ -79,10 +79,38 @@ def score_submissions(folders: Sequence[Path], jobs: int) -> list[Entry]:
         jobs: How many splits are replayed at once, a process for each.
 
     Raises:
-        ValueError: If one does not follow the format, or does not lead to the states that it names.
+        ValueError: If one does not follow the format, or does not lead to the states that it names,
+            or if two have one name.
         OSError: If a process is killed.
     """
-    return replay_submissions([read_known(folder) for folder in folders], jobs)
+    submissions = [read_known(folder) for folder in folders]
+    _check_names(submissions)
+    return replay_submissions(submissions, jobs)
+
+
+def shared_checkpoints(entries: Sequence[Entry]) -> list[str]:
+    """A sentence for each two entries of one track and one checkpoint."""
+    first: dict[tuple[str, str], str] = {}
+    sentences = []
+    for entry in entries:
+        about = entry.submission
+        if about.policy.checkpoint is None:
+            continue
+        other = first.setdefault((about.track, about.policy.checkpoint), about.name)
+        if other != about.name:
+            sentences.append(f"{about.name!r} and {other!r} are entries of one checkpoint.")
+    return sentences
+
+
+def _check_names(submissions: Sequence[SubmissionFiles]) -> None:
+    folders: dict[str, Path] = {}
+    for submission in submissions:
+        name = submission.description.name
+        other = folders.setdefault(name.casefold(), submission.folder)
+        if other is not submission.folder:
+            raise ValueError(
+                f"{submission.folder} and {other} are both named {name!r}; rename or leave out one."
+            )
 
 
 def replay_submissions(submissions: Sequence[SubmissionFiles], jobs: int) -> list[Entry]:

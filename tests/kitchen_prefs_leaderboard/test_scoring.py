@@ -7,6 +7,7 @@ import subprocess
 import sys
 from dataclasses import replace
 from pathlib import Path
+from shutil import copytree
 from types import SimpleNamespace
 
 import numpy as np
@@ -241,3 +242,21 @@ def test_an_action_whose_rounding_would_choose_another_becomes_its_pose(
         rounded = tuple(round(number, 4) for number in between(share))
         kept.append(line.actions[0] == rounded)
     assert sorted(kept) == [False, True]  # both are rounded to one pose, which chooses as one does
+
+
+def test_two_entries_of_one_name_are_refused(folder, tmp_path, kitchen_prefs):
+    twin = copytree(folder, tmp_path / "twin")
+    said = kitchen_prefs("leaderboard", "score", folder, twin)
+    assert (
+        said == f"kitchen-prefs: {twin} and {folder} are both named 'a'; rename or leave out one."
+    )
+
+
+def test_two_entries_of_one_checkpoint_are_told(
+    few_sessions, folder, tmp_path, kitchen_prefs, capsys
+):
+    twin = copytree(folder, tmp_path / "twin")
+    described = json.loads((twin / "submission.json").read_text())
+    (twin / "submission.json").write_text(json.dumps(described | {"name": "b"}))
+    assert not kitchen_prefs("leaderboard", "score", folder, twin, "--format=csv", "--jobs=1")
+    assert capsys.readouterr().err.endswith("'b' and 'a' are entries of one checkpoint.\n")

@@ -114,14 +114,14 @@ def test_lerobot_eval_rolls_out_a_checkpoint(home, trained):
         f"--policy.path={trained}/checkpoints/000004/pretrained_model",
         "--env.type=kitchen_prefs",
         "--env.task=val",
-        "--eval.n_episodes=3",
+        "--eval.n_episodes=3",  # of each preference
         "--eval.batch_size=2",
-        "--eval.use_async_envs=false",  # the expert, below, has a process for each
         "--policy.device=cpu",
         f"--output_dir={out}",
     )
     info = json.loads((out / "eval_info.json").read_text())
-    assert info["overall"]["n_episodes"] == 3
+    assert info["overall"]["n_episodes"] == 3 * 7
+    assert [task["task_id"] for task in info["per_task"]] == list(range(7))
 
 
 @pytest.mark.lerobot
@@ -146,8 +146,8 @@ def test_lerobot_eval_gives_the_expert_full_success(home):
         "--env.type=kitchen_prefs",
         "--env.track=privileged",
         "--env.task=unseen_both",
-        "--eval.n_episodes=5",
-        "--eval.batch_size=3",
+        "--eval.n_episodes=2",
+        "--eval.batch_size=2",
         f"--output_dir={home / 'expert'}",
     )
     info = json.loads((home / "expert" / "eval_info.json").read_text())

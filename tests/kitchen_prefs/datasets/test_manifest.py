@@ -6,6 +6,7 @@ import pytest
 
 from kitchen_prefs.datasets import dataset_names, dataset_root, load_dataset, make_dataset
 from kitchen_prefs.datasets.manifest import MANIFEST, published_fingerprint
+from kitchen_prefs.datasets.verification import verify_dataset
 from kitchen_prefs.splits import DATA_VERSION
 
 SMALL = "dishwasher-train-p2-d2-v1"
@@ -35,6 +36,17 @@ def test_a_half_written_data_set_is_refused(home):
     (root / "meta" / "info.json").write_text("{}")
     with pytest.raises(ValueError, match="is incomplete; delete the folder"):
         load_dataset(SMALL)
+
+
+def test_what_a_failed_edit_in_place_left_behind_is_named_with_the_way_back(home):
+    root = make_dataset(SMALL)
+    before = root.rename(root.with_name(f"{root.name}_old"))  # as lerobot-edit-dataset does
+    (root / "meta").mkdir(parents=True)
+    way_back = rf"left it in {before}; delete the folder {root} and move {before} back"
+    with pytest.raises(ValueError, match=way_back):
+        load_dataset(SMALL)
+    with pytest.raises(ValueError, match=way_back):
+        list(verify_dataset(SMALL))
 
 
 @pytest.mark.parametrize(

@@ -3,12 +3,14 @@
 import numpy as np
 import pytest
 import torch
+from gymnasium.vector import AutoresetMode, SyncVectorEnv
 from lerobot.envs import make_env_pre_post_processors, preprocess_observation
-from lerobot.envs.utils import env_to_policy_features
+from lerobot.envs.utils import env_to_policy_features, freeze_after_episode_end
 from lerobot.policies import make_pre_post_processors
 from lerobot.scripts.lerobot_eval import eval_policy
 
 from kitchen_prefs.envs.demonstrations import prompt_of
+from kitchen_prefs.envs.environment import DishwasherLoading
 from kitchen_prefs.envs.lerobot_env import FEATURES_MAP, KitchenPrefsEnv
 from kitchen_prefs.metrics import edit_similarity, packing_efficiency, score
 from kitchen_prefs.preferences import HELD_OUT, SEEN
@@ -32,9 +34,10 @@ def make_rule(rule, env_config):
 def roll_out(rule, split, sessions, track="standard"):
     """The episodes of a rule on some sessions, rolled out as one batch."""
     config = KitchenPrefsEnv(task=split, track=track)
-    batch = config.create_envs(len(sessions))["kitchen_prefs"][0]
     policy = make_rule(rule, config)
-    envs = [env.unwrapped for env in batch.envs]
+    envs = [DishwasherLoading(split, track) for _ in sessions]
+    ones = [freeze_after_episode_end(lambda env=env: env) for env in envs]
+    batch = SyncVectorEnv(ones, autoreset_mode=AutoresetMode.SAME_STEP)
     observation, _ = batch.reset(seed=list(sessions))
     done = np.zeros(len(sessions), dtype=bool)
     while not done.all():
@@ -93,7 +96,7 @@ def evaluate_as_lerobot_does(rule, batch_size):
     policy = make_rule(rule, config)
     environment_steps = make_env_pre_post_processors(config, policy.config)
     policy_steps = make_pre_post_processors(policy.config)
-    batch = config.create_envs(batch_size)["kitchen_prefs"][0]
+    batch = config.create_envs(batch_size)["kitchen_prefs"][8]
     results = eval_policy(
         batch, policy, *environment_steps, *policy_steps, n_episodes=16, start_seed=1000
     )

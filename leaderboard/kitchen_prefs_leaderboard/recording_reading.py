@@ -1,0 +1,106 @@
+"""Reads what `lerobot-eval --eval.recording=true` recorded as the episodes of a submission.
+
+DIR/
+    seen/                       --env.task=seen --output_dir=DIR/seen
+        recordings/             a LeRobot data set for each environment
+    unseen_preferences/
+    ...                         one folder for each test split
+
+A recording does not name its session; the first instance set does, because no two sessions of a
+split begin alike.
+"""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+from tqdm import tqdm
+
+from kitchen_prefs import instances
+from kitchen_prefs.envs.episode_simulator import EpisodeSimulator
+from kitchen_prefs.metrics import Episode
+from kitchen_prefs.simulation.sessions import make_session
+from kitchen_prefs.splits import TEST_SPLITS, get_split
+
+COLUMNS = ["instances", "action", "episode_index"]
+ADVICE = "run lerobot-eval on the whole split, as docs/lerobot_tools.md shows."
+
+
+def read_recordings(folder: Path) -> dict[str, list[Episode]]:
+    """Read the recordings of all test splits and replay their actions.
+
+    Args:
+        folder: The folder with an output folder of `lerobot-eval` for each test split.
+
+    Returns:
+        The episodes of each split, in the order of the sessions.
+
+    Raises:
+        ValueError: If a split, a session or the end of an episode is missing, or a recording is
+            damaged or belongs to no session.
+    """
+    for split in TEST_SPLITS:
+        if not (folder / split / "recordings").is_dir():
+            raise ValueError(f"{folder / split} has no recordings; {ADVICE}")
+    return {split: _episodes(split, folder / split / "recordings") for split in TEST_SPLITS}
+
+
+def _episodes(split: str, recordings: Path) -> list[Episode]:
+    session_of = _sessions_by_first_set(split)
+    found: dict[int, Episode] = {}
+    for first, actions in _recorded(recordings):
+        session = session_of.get(first.tobytes())
+        if session is None:
+            raise ValueError(f"{recordings} holds an episode of no session of {split}.")
+        if session not in found:
+            found[session] = _replayed(split, session, actions)
+    missing = sorted(set(range(get_split(split).sessions)) - found.keys())
+    if missing:
+        raise ValueError(f"{recordings} lacks session {missing[0]} of {split}; {ADVICE}")
+    return [found[session] for session in sorted(found)]
+
+
+def _sessions_by_first_set(split: str) -> dict[bytes, int]:
+    sessions = tqdm(range(get_split(split).sessions), f"Sessions of {split}", leave=False)
+    starts = (EpisodeSimulator(make_session(split, i)).observation.rows for i in sessions)
+    return {instances.pack(rows).tobytes(): i for i, rows in enumerate(starts)}
+
+
+def _recorded(recordings: Path) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+    """The first instance set, (72 * 13,), and the actions, (T, 7), of each recorded episode."""
+    for file in sorted(recordings.rglob("data/*/*.parquet")):
+        try:
+            table = pq.read_table(file, columns=COLUMNS)
+            episodes = table["episode_index"].to_numpy()
+            sets = _values(table["instances"], len(episodes))
+            actions = _values(table["action"], len(episodes))
+        except (OSError, ValueError, KeyError, pa.ArrowException) as error:
+            raise ValueError(f"{file} is no recording of this environment; {ADVICE}") from error
+        for episode in np.unique(episodes):
+            frames = episodes == episode
+            yield sets[frames][0], actions[frames]
+
+
+def _values(column: pa.ChunkedArray, rows: int) -> np.ndarray:
+    """A column of lists as an array of float32, (rows, columns)."""
+    flat = column.combine_chunks()
+    if isinstance(flat, pa.ExtensionArray):  # a two-dimensional feature of LeRobot's
+        flat = flat.storage
+    while not pa.types.is_floating(flat.type):
+        flat = flat.flatten()
+    return flat.to_numpy(zero_copy_only=False).astype(np.float32).reshape(rows, -1)
+
+
+def _replayed(split: str, session: int, actions: np.ndarray) -> Episode:
+    simulator = EpisodeSimulator(make_session(split, session))
+    for action in actions:
+        if simulator.terminated or simulator.truncated:
+            raise ValueError(
+                f"The recording of session {session} of {split} goes on after its end."
+            )
+        simulator.act(action)
+    if not (simulator.terminated or simulator.truncated):
+        raise ValueError(f"The recording of session {session} of {split} ends too early; {ADVICE}")
+    return simulator.episode()
