@@ -128,6 +128,7 @@ def _print_summary(summary: "Summary") -> None:
     for name, interval in summary.metrics.items():
         metrics.add_row(name, f"{interval.mean:.3f}", f"{interval.low:.3f} to {interval.high:.3f}")
     console.print(metrics)
+    console.print(f"Success with its Wilson interval is {summary.wilson_success}.")
     if references := reference_scores().get(summary.split):
         console.print(
             f"Rescaled is 0 at the Score {references['floor']:.3f} (the rule promptless) and 1 at "

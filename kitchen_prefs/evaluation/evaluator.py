@@ -18,6 +18,7 @@ from kitchen_prefs.metrics import (
     prompt_use,
     summarise,
     summarise_all,
+    wilson_success,
 )
 from kitchen_prefs.splits import DATA_VERSION
 from kitchen_prefs.utils.files import write_json
@@ -31,12 +32,14 @@ class Summary:
         split: The split's name.
         episodes: How many episodes there are.
         metrics: The mean and interval of each metric that has a value.
+        wilson_success: The share of successes with its Wilson interval, as LeRobot has it.
         failure_modes: For each failure mode, in how many episodes it occurred and how often in all.
     """
 
     split: str
     episodes: int
     metrics: dict[str, Interval]
+    wilson_success: Interval
     failure_modes: dict[str, tuple[int, int]]
 
 
@@ -81,7 +84,9 @@ class Evaluator:
         if with_category_accuracy:
             on_expert_states = self.episodes(split, expert_states=True)
             metrics["Category accuracy"] = summarise(on_expert_states, category_accuracy)
-        summary = Summary(split, len(episodes), metrics, count_failure_modes(episodes))
+        summary = Summary(
+            split, len(episodes), metrics, wilson_success(episodes), count_failure_modes(episodes)
+        )
         conditions = self._conditions("same", expert_states=False)
         write_json(
             self.folder / f"{split}.json", {**asdict(summary), "conditions": asdict(conditions)}

@@ -2,7 +2,7 @@
 
 episode    the facts of one finished episode
 scores     the metrics, each a function of an episode
-intervals  means over episodes with 95 % bootstrap intervals
+intervals  means over episodes with 95 % intervals
 """
 
 from kitchen_prefs.metrics.episode import Episode
@@ -13,6 +13,7 @@ from kitchen_prefs.metrics.intervals import (
     prompt_use,
     summarise,
     summarise_all,
+    wilson_success,
 )
 from kitchen_prefs.metrics.scores import (
     ALL_METRICS,
@@ -61,4 +62,5 @@ __all__ = [
     "summarise_all",
     "temporal_efficiency",
     "turn_accuracy",
+    "wilson_success",
 ]

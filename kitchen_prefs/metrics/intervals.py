@@ -1,4 +1,4 @@
-"""Means over episodes with 95 % bootstrap intervals."""
+"""Means over episodes with 95 % intervals: the bootstrap's, and Wilson's for success."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -7,14 +7,14 @@ from typing import Self
 import numpy as np
 
 from kitchen_prefs.metrics.episode import Episode
-from kitchen_prefs.metrics.scores import ALL_METRICS, Metric, packing_efficiency
+from kitchen_prefs.metrics.scores import ALL_METRICS, Metric, packing_efficiency, success
 
 DIGITS = 4  # three are significant, given the bootstrap; a fourth avoids rounding errors in them
 
 
 @dataclass(frozen=True)
 class Interval:
-    """A mean and its 95 % bootstrap interval."""
+    """A mean and its 95 % interval."""
 
     mean: float
     low: float
@@ -49,6 +49,23 @@ def summarise_all(episodes: Sequence[Episode]) -> dict[str, Interval]:
         for name, metric in ALL_METRICS.items()
         if _has_values(episodes, metric)
     }
+
+
+def wilson_success(episodes: Sequence[Episode]) -> Interval:
+    """The share of episodes that succeed and its 95 % Wilson interval (Wilson, 1927).
+
+    LeRobot's `pc_success_ci95`. Unlike the bootstrap's it has a width where all episodes succeed.
+
+    Raises:
+        ValueError: If there are no episodes.
+    """
+    from scipy.stats import binomtest  # takes half a second to import
+
+    if not episodes:
+        raise ValueError("There are no episodes to summarise.")
+    test = binomtest(sum(map(success, episodes)), len(episodes))
+    low, high = test.proportion_ci(method="wilson")
+    return Interval(test.statistic, float(low), float(high))
 
 
 def prompt_use(episodes: Sequence[Episode], swapped: Sequence[Episode]) -> Interval:

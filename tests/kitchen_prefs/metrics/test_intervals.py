@@ -14,6 +14,7 @@ from kitchen_prefs.metrics import (
     prompt_use,
     summarise,
     summarise_all,
+    wilson_success,
 )
 from kitchen_prefs.metrics.scores import turn_accuracy
 
@@ -84,3 +85,16 @@ def test_an_episode_without_a_value_is_left_out_of_the_mean():
 
 def test_files_hold_four_digits():
     assert Interval(1 / 3, -1 / 3, 2 / 3).rounded() == Interval(0.3333, -0.3333, 0.6667)
+
+
+@pytest.mark.parametrize(
+    ("successes", "low", "high"),
+    # By hand: (p + z^2/2n +- z sqrt(p(1 - p)/n + z^2/4n^2)) / (1 + z^2/n), z = 1.96, n = 10.
+    [(10, 0.722, 1.0), (0, 0.0, 0.278), (5, 0.237, 0.763)],
+)
+def test_success_has_a_width_even_where_all_succeed(successes, low, high):
+    perfect = [episode_of(session=i, placed=(2, 1)) for i in range(successes)]
+    failed = [episode_of(session=10 + i, placed=(0, 1)) for i in range(10 - successes)]
+    interval = wilson_success(perfect + failed)
+    assert interval.mean == successes / 10
+    assert (interval.low, interval.high) == pytest.approx((low, high), abs=0.001)
