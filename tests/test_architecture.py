@@ -84,10 +84,13 @@ LEADERBOARD = {
         "kitchen_prefs.metrics kitchen_prefs.splits kitchen_prefs.utils"
     ),
     "verification": (
-        "policy_runs scoring submission_format kitchen_prefs.envs kitchen_prefs.metrics "
-        "kitchen_prefs.utils"
+        "scoring submission_format kitchen_prefs.metrics kitchen_prefs.splits kitchen_prefs.utils"
     ),
-    "ranking": "scoring submission_format verification",
+    "reruns": (
+        "scoring verification kitchen_prefs.evaluation kitchen_prefs.metrics "
+        "kitchen_prefs.simulation kitchen_prefs.splits"
+    ),
+    "ranking": "scoring submission_format verification kitchen_prefs.metrics",
     "score_formats": "scoring verification kitchen_prefs.metrics",
     "hub_upload": "scoring kitchen_prefs.splits kitchen_prefs.utils",
     "page": (
@@ -95,7 +98,7 @@ LEADERBOARD = {
         "kitchen_prefs.simulation kitchen_prefs.splits kitchen_prefs.utils"
     ),
     "commands": (
-        "hub_upload page policy_runs ranking recording_reading score_formats scoring "
+        "hub_upload page policy_runs ranking recording_reading reruns score_formats scoring "
         "submission_format submission_writing verification kitchen_prefs.evaluation "
         "kitchen_prefs.utils"
     ),

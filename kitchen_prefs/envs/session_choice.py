@@ -5,12 +5,14 @@ from typing import Any
 
 import numpy as np
 
+from kitchen_prefs.simulation.sessions import FRESH_USERS
 from kitchen_prefs.utils.suggestions import suggest
 
 RESET_OPTIONS = ("session", "salt")
 # LeRobot's mark of a new rollout (lerobot.envs.utils.NEW_ROLLOUT_OPTION); it changes nothing here.
 LEROBOT_OPTION = "lerobot_new_rollout"
-FRESH_SALTS = 2**31  # an unseeded reset draws its salt below this, never the published salt 0
+# An unseeded reset draws its salt below the salts of re-runs, and never the published salt 0.
+FRESH_SALTS = FRESH_USERS
 
 
 def choose_session(

@@ -7,6 +7,7 @@ from importlib.metadata import version
 from pathlib import Path
 
 from kitchen_prefs.evaluation.episode_files import EpisodeFile, EvaluationConditions
+from kitchen_prefs.evaluation.isolation.isolated_policy import IsolatedPolicy
 from kitchen_prefs.evaluation.policy_loading import LoadedPolicy
 from kitchen_prefs.evaluation.rollouts import BATCH_SIZE, roll_out
 from kitchen_prefs.metrics import (
@@ -57,7 +58,7 @@ class Evaluator:
         batch_size: How many sessions are rolled out at once.
     """
 
-    loaded_policy: LoadedPolicy
+    loaded_policy: LoadedPolicy | IsolatedPolicy
     folder: Path
     salt: int = 0
     prompts: int = 1
@@ -101,7 +102,6 @@ class Evaluator:
         self, split: str, *, prompt_of: str = "same", expert_states: bool = False
     ) -> list[Episode]:
         """The policy's episodes on a split; those not in the folder are rolled out first."""
-        name = split + "-other-prompt" * (prompt_of == "other") + "-expert-states" * expert_states
         return roll_out(
             self.loaded_policy,
             split,
@@ -111,9 +111,7 @@ class Evaluator:
             prompts=self.prompts,
             expert_states=expert_states,
             batch_size=self.batch_size,
-            file=EpisodeFile(
-                self.folder / f"{name}.jsonl", self._conditions(prompt_of, expert_states)
-            ),
+            file=self.file(split, prompt_of=prompt_of, expert_states=expert_states),
         )
 
     @cached_property
@@ -121,10 +119,11 @@ class Evaluator:
         return self.loaded_policy.fingerprint
 
     def _conditions(self, prompt_of: str, expert_states: bool) -> EvaluationConditions:
+        policy = self.loaded_policy
         return EvaluationConditions(
-            policy=self.loaded_policy.policy.config.type,
+            policy=policy.type,
             fingerprint=self._fingerprint,
-            track=self.loaded_policy.track,
+            track=policy.track,
             prompt_of=prompt_of,
             prompts=self.prompts,
             expert_states=expert_states,
@@ -132,3 +131,11 @@ class Evaluator:
             data_version=DATA_VERSION,
             package_version=version("lerobot_policy_kitchen_prefs"),
         )
+
+    def file(
+        self, split: str, *, prompt_of: str = "same", expert_states: bool = False
+    ) -> EpisodeFile:
+        """The file of the policy's episodes on a split."""
+        name = split + "-other-prompt" * (prompt_of == "other") + "-expert-states" * expert_states
+        conditions = self._conditions(prompt_of, expert_states)
+        return EpisodeFile(self.folder / f"{name}.jsonl", conditions)

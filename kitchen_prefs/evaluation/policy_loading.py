@@ -83,6 +83,16 @@ class LoadedPolicy:
         return self.postprocessor(action).to("cpu", torch.float32).numpy()
 
     @property
+    def type(self) -> str:
+        """The policy's type."""
+        return self.policy.config.type
+
+    @property
+    def parameters(self) -> int:
+        """The number of its weights."""
+        return sum(weight.numel() for weight in self.policy.parameters())
+
+    @property
     def fingerprint(self) -> str:
         """A hash of all weights and settings that change its behaviour, the processors' too."""
         sha = hashlib.sha256()

@@ -40,6 +40,7 @@ def roll_out(
     expert_states: bool = False,
     batch_size: int = BATCH_SIZE,
     file: EpisodeFile | None = None,
+    quiet: bool = False,
 ) -> list[Episode]:
     """Roll a policy out on sessions of a split.
 
@@ -58,6 +59,7 @@ def roll_out(
             episodes are reproduced only if all sessions are rolled out with the same batch size,
             without an interruption.
         file: Where each episode is written as it ends; the sessions in it are not rolled out again.
+        quiet: Show no progress bar.
 
     Returns:
         One episode per session, in the order of the sessions.
@@ -76,7 +78,11 @@ def roll_out(
     name, done = file.path.stem if file else split, len(wanted) - len(missing)
     with (
         tqdm(
-            total=len(wanted), initial=done, desc=name, unit="episode", disable=not missing
+            total=len(wanted),
+            initial=done,
+            desc=name,
+            unit="episode",
+            disable=quiet or not missing,
         ) as bar,
         torch.random.fork_rng(),
     ):

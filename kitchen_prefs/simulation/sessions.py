@@ -23,8 +23,17 @@ from kitchen_prefs.preferences import (
 from kitchen_prefs.simulation.counter_layout import lay_counter
 from kitchen_prefs.simulation.expert import ExpertTrajectory, roll_out_expert
 from kitchen_prefs.simulation.kitchen import Dishes, Kitchen
-from kitchen_prefs.splits import DATA_VERSION, OTHER_USERS, SEEN_USERS, get_split
+from kitchen_prefs.splits import (
+    DATA_VERSION,
+    HELD_OUT_USERS,
+    OTHER_USERS,
+    SEEN_USERS,
+    get_split,
+)
 
+# From this salt on the five held-out users, too, have preferences that are drawn anew: a re-run's
+# users are then users whom nobody has published. The seven of training stay.
+FRESH_USERS = 2**31
 LEAST_PRESENT = 0.5  # at least half of the dishes stand there at the start
 
 
@@ -160,15 +169,20 @@ def preference_with(label: int) -> Preference:
 
 
 def _preference_of(user: int, salt: int) -> Preference:
-    """A user's preference; those from 12 on are drawn anew for each salt."""
-    return TWELVE[user] if user < len(TWELVE) else _other_preferences(salt)[user - len(TWELVE)]
+    """A user's preference; those from 12 on are drawn anew for each salt, see `FRESH_USERS`."""
+    if user in OTHER_USERS:
+        return _other_preferences(salt)[user - OTHER_USERS[0]]
+    if user in HELD_OUT_USERS and salt >= FRESH_USERS:
+        return _other_preferences(salt)[len(OTHER_USERS) + user - HELD_OUT_USERS[0]]
+    return TWELVE[user]
 
 
 @lru_cache
 def _other_preferences(salt: int) -> tuple[Preference, ...]:
+    """The preferences of the other users, and then those of the held-out users when drawn anew."""
     numbers = _generator("many_preferences", salt, 0, "preferences").permutation(SPACE_SIZE)
     others = (p for p in map(preference_from_number, numbers.tolist()) if p not in TWELVE)
-    return tuple(next(others) for _ in OTHER_USERS)
+    return tuple(next(others) for _ in (*OTHER_USERS, *HELD_OUT_USERS))
 
 
 def _shows_every_category(session: Session) -> bool:

@@ -18,7 +18,9 @@ ONE_THREAD = {"OMP_NUM_THREADS": "1"}
 
 
 def run_module(module: str, arguments: Sequence[str], log: Path, title: str) -> None:
-    """Run `python -m MODULE ARGUMENTS` in one thread, and show the progress bar that it prints.
+    """Run `python -P -m MODULE ARGUMENTS` in one thread, and show the progress bar that it prints.
+
+    With -P nothing is imported from the current folder, where a stranger's files may lie.
 
     Args:
         module: Such as "kitchen_prefs.cli".
@@ -30,7 +32,7 @@ def run_module(module: str, arguments: Sequence[str], log: Path, title: str) -> 
         OSError: If the module fails; the message names the log.
     """
     process = subprocess.Popen(
-        [sys.executable, "-m", module, *arguments],
+        [sys.executable, "-P", "-m", module, *arguments],
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
         text=True,  # so that a carriage return, which ends a bar's line, ends a line here, too

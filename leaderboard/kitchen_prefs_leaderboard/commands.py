@@ -140,14 +140,17 @@ def verify(
         int | None,
         typer.Option(help="The seed of the fresh sessions.", min=1, show_default="at random"),
     ] = None,
+    by: Annotated[str, typer.Option(help="Who re-runs it.")] = "unknown",
     verifications: Verifications = KEPT,
     out: Annotated[Path, typer.Option(help="The folder of the episodes.")] = Path("outputs/verify"),
     jobs: Jobs = CORES,
 ) -> None:
     """Replay a submission's actions; with --rerun, check which policy chose them.
 
-    A re-run rolls the policy out again, on the test splits and on fresh sessions, which were not
-    known when the submission was made. Its record is kept; only rows with one are ranked.
+    A re-run rolls the policy out again, on the test splits and on fresh sessions of fresh users,
+    which were not known when the submission was made. The policy runs in a process of its own that
+    receives observations alone. The record is kept; only rows with one are ranked.
+    A command that was killed resumes.
 
     For example:
     kitchen-prefs leaderboard verify leaderboard/submissions/ttp_plus --rerun
@@ -165,16 +168,20 @@ def verify(
         return
     make_folder(out, "--out")
     make_folder(verifications, "--verifications")
-    from kitchen_prefs_leaderboard.policy_runs import load_policy_run
+    from kitchen_prefs.evaluation.isolation.sandbox import NO_SANDBOX, has_sandbox
+    from kitchen_prefs_leaderboard.policy_runs import policy_settings
+    from kitchen_prefs_leaderboard.reruns import Rerunner, rerun_submission
     from kitchen_prefs_leaderboard.submission_writing import policy_of
 
+    if not has_sandbox():
+        typer.echo(NO_SANDBOX, err=True)
     submission = read_known(folder)
-    policy = load_policy_run(path, policy_type, context.args, submission.description.track)
-    verification.check_policy(submission.description, policy_of(policy.loaded_policy))
+    settings = policy_settings(path, policy_type, context.args, submission.description.track)
+    rerunner = Rerunner(settings, out / submission.digest[:12], jobs)
+    with rerunner.policy() as policy:
+        verification.check_policy(submission.description, policy_of(policy))
     (entry,) = replay_submissions([submission], jobs)
-    kept = out / entry.digest[:12]
-    salt = salt or verification.session_seed(kept)
-    found = verification.rerun_policy(entry, policy, salt, kept, jobs)
+    found = rerun_submission(entry, rerunner, salt, by)
     file = verification.write_verification(found, verifications)
     console.print(score_formats.to_comparison(found))
     typer.echo(f"{score_formats.to_verdict(found)}\nThe record is {file}.")

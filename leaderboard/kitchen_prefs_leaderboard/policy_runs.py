@@ -4,7 +4,9 @@ from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
+from kitchen_prefs.evaluation.checkpoint_reading import find_checkpoint
 from kitchen_prefs.evaluation.episode_files import read_episodes, read_header
 from kitchen_prefs.evaluation.policy_loading import LoadedPolicy, load_policy
 from kitchen_prefs.evaluation.policy_options import settings_of
@@ -80,7 +82,7 @@ def shares(jobs: int) -> list[list[str]]:
 def load_policy_run(
     path: str | None, policy_type: str | None, settings: Sequence[str], track: str
 ) -> PolicyRun:
-    """Load a policy for a track of the leaderboard.
+    """Load one's own policy for a track of the leaderboard.
 
     Args:
         path: A checkpoint, see `load_policy`.
@@ -91,9 +93,32 @@ def load_policy_run(
     Raises:
         ValueError: If there is no such track, or if it cannot be loaded, see `load_policy`.
     """
-    if track not in TRACKS:
-        raise ValueError(f"There is no track {track!r}. {suggest(track, TRACKS)}")
-    observed = None if track == "open" else track
-    loaded_policy = load_policy(path, policy_type, settings_of(settings), track=observed)
+    loaded_policy = load_policy(**policy_settings(path, policy_type, settings, track))
     policy = f"--policy.path={path}" if path else f"--policy.type={policy_type}"
     return PolicyRun(loaded_policy, (policy, *settings, f"--track={loaded_policy.track}"))
+
+
+def policy_settings(
+    path: str | None, policy_type: str | None, settings: Sequence[str], track: str
+) -> dict[str, Any]:
+    """The arguments of `load_policy` that load a policy for a track of the leaderboard.
+
+    Nothing of the policy is imported. A checkpoint on the hub is downloaded.
+
+    Args:
+        path: A checkpoint.
+        policy_type: The type of a policy that needs no training.
+        settings: Settings of the policy to override, as in `--policy.rule=symbolic`.
+        track: What the policy observes; on the open track, the track of its own settings.
+
+    Raises:
+        ValueError: If there is no such track or checkpoint, or an argument is no setting.
+    """
+    if track not in TRACKS:
+        raise ValueError(f"There is no track {track!r}. {suggest(track, TRACKS)}")
+    return {
+        "path": path and str(find_checkpoint(path).resolve()),
+        "policy_type": policy_type,
+        "options": settings_of(settings),
+        "track": None if track == "open" else track,
+    }

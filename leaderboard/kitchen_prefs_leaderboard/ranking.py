@@ -3,7 +3,8 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from kitchen_prefs_leaderboard.scoring import MEAN, Entry, difference
+from kitchen_prefs.metrics import Episode, Interval, mean_of_splits, score
+from kitchen_prefs_leaderboard.scoring import MEAN, Entry
 from kitchen_prefs_leaderboard.submission_format import TRACKS
 from kitchen_prefs_leaderboard.verification import Verification
 
@@ -45,9 +46,13 @@ def rank(entries: Sequence[Entry], verified: dict[str, Verification]) -> dict[st
 
 
 def _ranking_score(row: Row) -> float:
-    """The Score that counts: the lower one of the submission and its re-run."""
+    """The Score that counts: the re-run's, and for a record of an earlier procedure the lower."""
     replayed = row.entry.metrics[MEAN]["Score"].mean
-    return min(replayed, row.verification.rerun.mean) if row.verification else replayed
+    if row.verification is None:
+        return replayed
+    if row.verification.scores is None:
+        return min(replayed, row.verification.rerun.mean)
+    return row.verification.rerun.mean
 
 
 def _ranked(rows: Sequence[Row]) -> list[Row]:
@@ -58,7 +63,7 @@ def _ranked(rows: Sequence[Row]) -> list[Row]:
     """
     groups: list[list[Row]] = []
     for row in rows:
-        if groups and difference(groups[-1][0].entry.episodes, row.entry.episodes).low <= 0:
+        if groups and lead(groups[-1][0], row).low <= 0:
             groups[-1].append(row)
         else:
             groups.append([row])
@@ -67,3 +72,27 @@ def _ranked(rows: Sequence[Row]) -> list[Row]:
         rank, tied = len(ranked) + 1, len(group) > 1
         ranked += [replace(row, rank=rank, tied=tied) for row in group]
     return ranked
+
+
+def lead(first: Row, second: Row) -> Interval:
+    """The difference in Score between two rows on the same sessions, of the re-runs if recorded.
+
+    The paired bootstrap: the sessions' differences are resampled.
+    """
+    ours, theirs = _scores(first), _scores(second)
+
+    def gain(episode: Episode) -> float:
+        session = episode.split, episode.session
+        return ours[session] - theirs[session]
+
+    return mean_of_splits(list(first.entry.episodes.values()), gain)
+
+
+def _scores(row: Row) -> dict[tuple[str, int], float]:
+    """The Score that counts in each session."""
+    recorded = row.verification.scores if row.verification else None
+    return {
+        (split, episode.session): recorded[split][i] if recorded else score(episode)
+        for split, episodes in row.entry.episodes.items()
+        for i, episode in enumerate(episodes)
+    }

@@ -52,8 +52,13 @@ def to_verdict(found: Verification) -> str:
     same = f"{found.same:.0%} of the episodes have the same decisions"
     if found.confirmed:
         return f"The re-run confirms the submission; {same}."
-    where = "the same sessions" if not found.repeats else "fresh sessions"
-    return f"The re-run does NOT confirm the submission: on {where} its Score differs; {same}."
+    if not found.repeats:
+        why = "the policy does something else"
+    elif not found.independent:
+        why = f"its episodes depend on each other ({found.alone:.0%} went alike alone)"
+    else:
+        why = "its Score on fresh sessions is lower"
+    return f"The re-run does NOT confirm the submission: {why}; {same}."
 
 
 def to_json(entries: Sequence[Entry], by: str | None) -> str:

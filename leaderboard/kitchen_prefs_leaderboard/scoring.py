@@ -1,6 +1,6 @@
 """Scores submissions: every metric, from replays alone."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
@@ -15,9 +15,7 @@ from kitchen_prefs.metrics import (
     Episode,
     Interval,
     count_failure_modes,
-    mean_of_splits,
     mean_of_splits_all,
-    score,
     summarise_all,
 )
 from kitchen_prefs.splits import DATA_VERSION, TEST_SPLITS
@@ -142,21 +140,6 @@ def read_known(folder: Path) -> SubmissionFiles:
         if published_fingerprint(name) != fingerprint:
             raise ValueError(f"{folder} was made with another data set {name!r}.")
     return submission
-
-
-def difference(
-    episodes: Mapping[str, Sequence[Episode]], others: Mapping[str, Sequence[Episode]]
-) -> Interval:
-    """The difference in Score between two policies' episodes of the same sessions.
-
-    The paired bootstrap: the sessions' differences are resampled.
-
-    Args:
-        episodes: The episodes of each split.
-        others: The episodes that are subtracted.
-    """
-    theirs = {(e.split, e.session): score(e) for of in others.values() for e in of}
-    return mean_of_splits(list(episodes.values()), lambda e: score(e) - theirs[e.split, e.session])
 
 
 def _replay(

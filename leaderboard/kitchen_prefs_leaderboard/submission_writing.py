@@ -12,6 +12,7 @@ from tqdm import tqdm
 
 from kitchen_prefs.datasets.manifest import published_fingerprint
 from kitchen_prefs.evaluation.checkpoint_reading import find_checkpoint
+from kitchen_prefs.evaluation.isolation.isolated_policy import IsolatedPolicy
 from kitchen_prefs.evaluation.policy_loading import LoadedPolicy
 from kitchen_prefs.metrics import Episode
 from kitchen_prefs.splits import DATA_VERSION, TEST_SPLITS
@@ -85,14 +86,16 @@ def describe(**about: Any) -> Submission:
         raise ValueError(f"This cannot be submitted: {complaint(error)}") from error
 
 
-def policy_of(loaded_policy: LoadedPolicy) -> Policy:
-    """A LeRobot policy as a submission describes it."""
-    policy = loaded_policy.policy
-    return Policy(
-        type=policy.config.type,
-        parameters=sum(weight.numel() for weight in policy.parameters()),
-        checkpoint=loaded_policy.fingerprint,
-    )
+def policy_of(policy: LoadedPolicy | IsolatedPolicy) -> Policy:
+    """A LeRobot policy as a submission describes it.
+
+    Raises:
+        ValueError: If its own process describes it in another way.
+    """
+    try:
+        return Policy(type=policy.type, parameters=policy.parameters, checkpoint=policy.fingerprint)
+    except ValidationError as error:
+        raise ValueError(f"The policy describes itself wrongly: {complaint(error)}") from error
 
 
 def training_of(path: str) -> str:

@@ -1,23 +1,24 @@
 """Re-runs: they prove what a replay cannot, that the policy chose the actions.
 
-The submitted checkpoint is rolled out again, on the test splits and on fresh sessions, which were
-not known when the submission was made. The record is kept by the maintainers of the leaderboard,
-never in a submission: VERIFICATIONS/<digest of the submission>.json.
+The submitted policy is rolled out again in a process of its own (`reruns`), on the test splits and
+on fresh sessions, which were not known when the submission was made. The maintainers of the
+leaderboard keep the record, never a submission: VERIFICATIONS/<digest of the submission>.json.
+What a re-run cannot prove stands in leaderboard/README.md.
 """
 
-import secrets
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
-from math import hypot
+from math import hypot, sqrt
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated, Literal
 
+import numpy as np
 from pydantic import Field, ValidationError
 
-from kitchen_prefs.envs.session_choice import FRESH_SALTS
 from kitchen_prefs.metrics import Episode, Interval, mean_of_splits, score
+from kitchen_prefs.splits import TEST_SPLITS
 from kitchen_prefs.utils.files import write_json
-from kitchen_prefs_leaderboard.scoring import MEAN, Entry, difference
+from kitchen_prefs_leaderboard.scoring import MEAN, Entry
 from kitchen_prefs_leaderboard.submission_format import (
     Hash,
     Name,
@@ -27,8 +28,13 @@ from kitchen_prefs_leaderboard.submission_format import (
     installed_packages,
 )
 
-if TYPE_CHECKING:
-    from kitchen_prefs_leaderboard.policy_runs import PolicyRun  # imports torch
+# 1: in the scorer's own process, judged by the submission's own interval; 2: as `reruns` says.
+PROCEDURE: Literal[2] = 2
+ALIKE = 0.95  # of the episodes of a deterministic policy: other processors round otherwise
+STOCHASTIC_RUNS = 3
+SIGNIFICANT = 1.96  # standard errors, for 95 %
+
+Episodes = Mapping[str, Sequence[Episode]]  # of each test split
 
 
 class ScoreInterval(Strict):
@@ -43,31 +49,48 @@ class Verification(Strict):
     """The result of a re-run.
 
     Attributes:
+        procedure: Which procedure it followed, see `PROCEDURE`.
         digest: The hash of the submission's files.
+        by: Who re-ran it.
+        sandbox: Whether the policy's process was confined.
         packages: The versions of the packages that ran it.
         salt: The session seed of the fresh sessions.
+        runs: How often the policy was rolled out on the published sessions.
         same: The share of episodes with the same decisions as in the submission.
+        itself: The share of episodes with the same decisions in two of these runs; None for one.
+        alone: The share of the episodes that were rolled out in a batch of their own and went as
+            in a batch with others.
         replayed: Score of the submission's actions.
         rerun: Score of the policy on the same sessions.
         fresh: Score of the policy on the fresh sessions.
-        repeats: Whether its Score on the same sessions agrees with the submission's.
+        scores: Score of the policy in each session of each test split, its mean over the runs.
+        repeats: Whether the policy does what the submission says.
+        independent: Whether an episode does not depend on others.
         generalises: Whether its Score on the fresh sessions is not significantly lower.
     """
 
+    procedure: Literal[1, 2] = 1
     digest: Hash
+    by: Name = "unknown"
+    sandbox: bool = False
     packages: Annotated[dict[Name, Name], Field(max_length=50)]
     salt: Annotated[int, Field(ge=1)]
+    runs: Annotated[int, Field(ge=1)] = 1
     same: Annotated[float, Field(ge=0, le=1)]
+    itself: Annotated[float, Field(ge=0, le=1)] | None = None
+    alone: Annotated[float, Field(ge=0, le=1)] | None = None
     replayed: ScoreInterval
     rerun: ScoreInterval
     fresh: ScoreInterval
+    scores: dict[Name, list[float]] | None = None
     repeats: bool
+    independent: bool = True
     generalises: bool
 
     @property
     def confirmed(self) -> bool:
         """Whether the re-run confirms the submission."""
-        return self.repeats and self.generalises
+        return self.repeats and self.independent and self.generalises
 
 
 def read_verifications(folder: Path) -> dict[str, Verification]:
@@ -116,69 +139,119 @@ def check_policy(submission: Submission, policy: Policy) -> None:
         )
 
 
-def session_seed(folder: Path) -> int:
-    """The session seed (salt) of a re-run that was started in a folder, or else a new one."""
-    begun = sorted(folder.glob("salt-[1-9]*"))
-    if begun:
-        return int(begun[0].name.removeprefix("salt-"))
-    return secrets.randbelow(FRESH_SALTS - 1) + 1
+def needs_more_runs(entry: Entry, first: Episodes) -> bool:
+    """Whether a policy has to be rolled out again to be judged: it did not repeat its submission.
 
-
-def rerun_policy(
-    entry: Entry, policy: "PolicyRun", salt: int, folder: Path, jobs: int
-) -> Verification:
-    """Roll a policy out on the published and on fresh sessions, and compare with a submission.
-
-    Args:
-        entry: The submission, replayed.
-        policy: The policy that the submission names.
-        salt: The session seed of the fresh sessions.
-        folder: The folder of the episodes; those that it holds are reused.
-        jobs: How many processes share the splits.
-
-    Raises:
-        OSError: If an evaluation fails; the message names its log.
+    A deterministic policy repeats itself; one that does not is rolled out `STOCHASTIC_RUNS` times,
+    so that its own spread is known.
     """
-    rerun, fresh = (policy.roll_out(folder / f"salt-{seed}", seed, jobs) for seed in (0, salt))
-    return compare(entry, rerun, fresh, salt)
+    return alike(entry.episodes, first) < ALIKE
+
+
+def alike(episodes: Episodes, others: Episodes) -> float:
+    """The share of the sessions of `others` in which both took the same decisions."""
+    mine = {(e.split, e.session): e.decisions for of in episodes.values() for e in of}
+    same = [mine[e.split, e.session] == e.decisions for of in others.values() for e in of]
+    return sum(same) / len(same)
 
 
 def compare(
     entry: Entry,
-    rerun: Mapping[str, Sequence[Episode]],
-    fresh: Mapping[str, Sequence[Episode]],
+    reruns: Sequence[Episodes],
+    alone: Episodes,
+    fresh: Episodes,
+    *,
     salt: int,
+    by: str,
+    sandbox: bool,
 ) -> Verification:
-    """Compare a re-run with a submission.
+    """Judge a submission by its policy's re-runs.
 
-    It confirms the submission if on the same sessions the paired interval of the difference in
-    Score holds zero, and if on fresh sessions the policy is not worse by more than both intervals
-    allow, their half-widths combined as for independent means: it is not fitted to the published
-    sessions.
+    It repeats if at least 95 % of the episodes are alike. If they are not, but the policy repeats
+    itself from run to run, the submission is another policy's. If it does not repeat itself either,
+    the submission must lie within what the policy's own spread allows: the difference in Score
+    within 1.96 standard errors, which come from the runs and never from the submission.
+
+    An episode is independent of others if, rolled out in a batch of its own, it goes as in a batch
+    with others; of a policy that does not repeat itself this cannot be known.
+
+    It generalises if on fresh sessions its Score is not lower than in the re-run by more than both
+    intervals allow, their half-widths combined as for independent means.
 
     Args:
         entry: The submission, replayed.
-        rerun: Its policy's episodes on the same sessions, by split.
-        fresh: Its policy's episodes on fresh sessions, by split.
+        reruns: The policy's episodes on the published sessions, one or `STOCHASTIC_RUNS` times.
+        alone: Its episodes on some of them, each in a batch of its own.
+        fresh: Its episodes on fresh sessions.
         salt: The session seed of the fresh sessions.
+        by: Who re-runs.
+        sandbox: Whether the policy's process was confined.
     """
-    mine = {(e.split, e.session): e for episodes in entry.episodes.values() for e in episodes}
-    pairs = [(mine[e.split, e.session], e) for episodes in rerun.values() for e in episodes]
-    gain = difference(rerun, entry.episodes)
-    replayed = entry.metrics[MEAN]["Score"]
+    same = alike(entry.episodes, reruns[0])
+    itself = alike(reruns[0], reruns[1]) if len(reruns) > 1 else None
+    deterministic = itself is None or itself >= ALIKE
+    scores = _mean_scores(reruns)
+    rerun = _interval_of(reruns[0], scores)
     on_fresh = mean_of_splits(list(fresh.values()), score)
+    went_alone = alike(reruns[0], alone)
     return Verification(
+        procedure=PROCEDURE,
         digest=entry.digest,
+        by=by,
+        sandbox=sandbox,
         packages=installed_packages(),
         salt=salt,
-        same=sum(one.decisions == other.decisions for one, other in pairs) / len(pairs),
-        replayed=_score_interval(replayed),
-        rerun=_score_interval(mean_of_splits(list(rerun.values()), score)),
+        runs=len(reruns),
+        same=same,
+        itself=itself,
+        alone=went_alone,
+        replayed=_score_interval(entry.metrics[MEAN]["Score"]),
+        rerun=_score_interval(rerun),
         fresh=_score_interval(on_fresh),
-        repeats=gain.low <= 0 <= gain.high,
-        generalises=replayed.mean - on_fresh.mean
-        <= hypot(replayed.mean - replayed.low, on_fresh.high - on_fresh.mean),
+        scores={split: [round(value, 4) for value in scores[split]] for split in scores},
+        repeats=same >= ALIKE if deterministic else _within_spread(entry, reruns),
+        independent=went_alone >= ALIKE or not deterministic,
+        generalises=rerun.mean - on_fresh.mean
+        <= hypot(rerun.mean - rerun.low, on_fresh.high - on_fresh.mean),
     )
+
+
+def rerun_score(entry: Entry, verification: Verification, split: str) -> Interval:
+    """Score of the re-run on a split, or its mean over them: what is shown and ranked."""
+    assert verification.scores is not None
+    wanted = TEST_SPLITS if split == MEAN else (split,)
+    return _interval_of({name: entry.episodes[name] for name in wanted}, verification.scores)
+
+
+def _mean_scores(reruns: Sequence[Episodes]) -> dict[str, list[float]]:
+    """Score in each session, its mean over the runs."""
+    return {
+        split: np.mean([[score(e) for e in run[split]] for run in reruns], axis=0).tolist()
+        for split in reruns[0]
+    }
+
+
+def _interval_of(episodes: Episodes, scores: Mapping[str, Sequence[float]]) -> Interval:
+    """The mean of given scores over the sessions of some episodes."""
+    of_session = {
+        (e.split, e.session): value
+        for split, of_split in episodes.items()
+        for e, value in zip(of_split, scores[split], strict=True)
+    }
+    return mean_of_splits(list(episodes.values()), lambda e: of_session[e.split, e.session])
+
+
+def _within_spread(entry: Entry, reruns: Sequence[Episodes]) -> bool:
+    """Whether the submission's Score is one that the policy's own runs make likely."""
+    difference, variance = 0.0, 0.0
+    for split in TEST_SPLITS:
+        runs = np.array([[score(e) for e in run[split]] for run in reruns])  # (R, S)
+        submitted = np.array([score(e) for e in entry.episodes[split]])  # (S,)
+        difference += (submitted - runs.mean(0)).mean() / len(TEST_SPLITS)
+        # One run against the mean of R runs: each session adds its variance times 1 + 1/R.
+        spread = runs.var(0, ddof=1).sum() / runs.shape[1] ** 2
+        variance += (1 + 1 / len(runs)) * spread / len(TEST_SPLITS) ** 2
+    return abs(difference) <= SIGNIFICANT * sqrt(variance)
 
 
 def _named(policy: Policy) -> str:

@@ -1,0 +1,170 @@
+"""A policy that acts in a process of its own."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import threading
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any, Self
+
+import numpy as np
+
+from kitchen_prefs.evaluation.isolation.messages import PipeClosedError, receive, send
+from kitchen_prefs.evaluation.isolation.sandbox import confined, scrubbed_environment
+
+PROGRAM = "kitchen_prefs.evaluation.isolation.policy_process"
+ACTION_BYTES = 7 * 4  # a pose of float32
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What a policy's process may take.
+
+    Attributes:
+        memory: Bytes of data. The CUDA build of torch has 1 GB before a policy is loaded.
+        loading: Seconds until the policy is loaded; LeRobot alone takes ten on a busy core.
+        decision: Seconds for the actions of one batch.
+    """
+
+    memory: int = 8 * 1024**3
+    loading: float = 300.0
+    decision: float = 60.0
+
+
+class IsolatedPolicy:
+    """A policy in a process of its own, for `roll_out`; a context manager that ends the process.
+
+    Args:
+        settings: The arguments of `load_policy`; a path names a folder.
+        log: What the process prints.
+        hidden: Folders that the process must not see.
+        limits: What it may take.
+        seeds: Seeds the policy's random numbers, a number for each batch of episodes; they tell
+            nothing of the sessions.
+
+    Attributes:
+        type: The policy's type. This and the others are what the process says of its policy: a
+            claim that the evaluation cannot prove.
+        parameters: The number of its weights.
+        fingerprint: The hash of its weights and settings.
+        track: The track whose observations it receives: the one of the settings, or else its own.
+
+    Raises:
+        ValueError: If the policy is not loaded, or does not answer as it must; the message names
+            the log.
+    """
+
+    def __init__(
+        self,
+        settings: dict[str, Any],
+        log: Path,
+        *,
+        hidden: Sequence[Path] = (),
+        limits: Limits | None = None,
+        seeds: np.random.Generator | None = None,
+    ) -> None:
+        self._limits = limits or Limits()
+        self._seeds = seeds or np.random.default_rng()
+        self._log = log
+        self._track = settings.get("track")
+        self._scratch = TemporaryDirectory(prefix="kitchen_prefs_policy_")
+        scratch = Path(self._scratch.name)
+        arguments = json.dumps({**settings, "memory": self._limits.memory})
+        command = [sys.executable, "-P", "-m", PROGRAM, arguments]
+        with log.open("ab") as file:
+            self._process = subprocess.Popen(
+                confined(command, scratch, hidden),
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                stderr=file,
+                cwd=scratch,
+                env=scrubbed_environment(scratch),
+                start_new_session=True,
+            )
+        try:
+            self._introduce()
+        except BaseException:
+            self.close()
+            raise
+
+    def __enter__(self) -> Self:
+        """The policy."""
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        """End the process."""
+        self.close()
+
+    def reset(self) -> None:
+        """Begin a batch of episodes."""
+        with self._answering("begin an episode", self._limits.decision):
+            send(self._pipe_in, seed=int(self._seeds.integers(2**31)))
+
+    def act(self, observations: Sequence[dict[str, np.ndarray]], tasks: list[str]) -> np.ndarray:
+        """Choose actions for B episodes at once, see `rollouts.Policy`."""
+        batch = {name: np.stack([one[name] for one in observations]) for name in observations[0]}
+        with self._answering("decide", self._limits.decision):
+            send(self._pipe_in, batch, tasks=tasks)
+            _, arrays = receive(self._pipe_out, ACTION_BYTES * len(tasks))
+            actions = arrays.get("actions")
+            if actions is None or actions.shape != (len(tasks), 7):
+                raise PipeClosedError
+        return actions
+
+    def close(self) -> None:
+        """End the process."""
+        self._kill()
+        self._process.wait()
+        for pipe in (self._process.stdin, self._process.stdout):
+            assert pipe is not None
+            with suppress(BrokenPipeError):  # closing flushes, and nobody reads any more
+                pipe.close()
+        self._scratch.cleanup()
+
+    @property
+    def _pipe_in(self) -> Any:
+        return self._process.stdin
+
+    @property
+    def _pipe_out(self) -> Any:
+        return self._process.stdout
+
+    def _introduce(self) -> None:
+        with self._answering("load", self._limits.loading):
+            head, _ = receive(self._pipe_out, 0)
+            named = (head.get(name) for name in ("type", "fingerprint", "track"))
+            if not (all(isinstance(n, str) for n in named) and "parameters" in head):
+                raise PipeClosedError
+        self.type, self.fingerprint = head["type"], head["fingerprint"]
+        self.parameters, self.track = head["parameters"], self._track or head["track"]
+
+    @contextmanager
+    def _answering(self, what: str, seconds: float) -> Iterator[None]:
+        """The process is ended if it takes too long, and what went wrong is one sentence."""
+        late = threading.Event()
+
+        def end() -> None:
+            late.set()
+            self._kill()
+
+        timer = threading.Timer(seconds, end)
+        timer.start()
+        try:
+            yield
+        except (PipeClosedError, OSError) as error:
+            why = f"took longer than {seconds:g} s to" if late.is_set() else "did not"
+            raise ValueError(
+                f"The policy {why} {what}; {self._log} has what its process printed."
+            ) from error
+        finally:
+            timer.cancel()
+
+    def _kill(self) -> None:
+        if self._process.poll() is None:
+            os.killpg(self._process.pid, signal.SIGKILL)

@@ -1,0 +1,213 @@
+"""Rolls a submission's policy out again, in processes that receive observations and nothing else.
+
+The policy cannot tell which episodes count: published and fresh sessions, users and splits come in
+one random order, mixed into batches, and each process is started without any of them.
+"""
+
+import secrets
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
+from dataclasses import dataclass
+from itertools import batched
+from pathlib import Path
+from queue import Empty, SimpleQueue
+from typing import Any
+
+import numpy as np
+from tqdm import tqdm
+
+from kitchen_prefs.evaluation.episode_files import EpisodeFile
+from kitchen_prefs.evaluation.evaluator import Evaluator
+from kitchen_prefs.evaluation.isolation.isolated_policy import IsolatedPolicy, Limits
+from kitchen_prefs.evaluation.isolation.sandbox import has_sandbox
+from kitchen_prefs.evaluation.rollouts import BATCH_SIZE, roll_out
+from kitchen_prefs.metrics import Episode
+from kitchen_prefs.simulation.sessions import FRESH_USERS
+from kitchen_prefs.splits import TEST_SPLITS, get_split
+from kitchen_prefs_leaderboard.scoring import Entry
+from kitchen_prefs_leaderboard.verification import (
+    STOCHASTIC_RUNS,
+    Verification,
+    compare,
+    needs_more_runs,
+)
+
+Episodes = dict[str, list[Episode]]  # of each test split, in the order of the sessions
+Batch = tuple["Run", str, tuple[int, ...]]  # a run, a split and some of its sessions
+Files = dict[tuple["Run", str], EpisodeFile]  # the episodes of each run and split
+
+ALONE = 2  # sessions of each split that are also rolled out in a batch of their own
+LABELLED_TRACKS = ("privileged", "open")  # there a preference may have to be one of the twelve
+
+
+@dataclass(frozen=True)
+class Run:
+    """One roll-out of the test splits.
+
+    Attributes:
+        name: The folder of its episodes.
+        salt: The session seed.
+        alone: Whether it has few sessions, each in a batch of its own.
+    """
+
+    name: str
+    salt: int
+    alone: bool = False
+
+    def sessions(self, split: str) -> Sequence[int]:
+        """Its sessions of a split."""
+        everything = range(get_split(split).sessions)
+        if not self.alone:
+            return everything
+        generator = np.random.default_rng([self.salt, TEST_SPLITS.index(split)])
+        return sorted(generator.choice(everything, ALONE, replace=False).tolist())
+
+
+def fresh_run(folder: Path, track: str, salt: int | None) -> Run:
+    """The run on sessions that nobody has published; one that was begun in the folder goes on.
+
+    Its users are fresh too, except for the seven whom training shows, and except on tracks that
+    show a preference's label.
+
+    Args:
+        folder: The folder of the re-run.
+        track: The submission's track.
+        salt: The session seed; None draws one.
+    """
+    begun = sorted(folder.glob("fresh-[1-9]*"))
+    if salt is None and begun:
+        salt = int(begun[0].name.removeprefix("fresh-"))
+    if salt is None:
+        drawn = secrets.randbelow(FRESH_USERS - 1) + 1
+        salt = drawn if track in LABELLED_TRACKS else FRESH_USERS + drawn
+    return Run(f"fresh-{salt}", salt)
+
+
+@dataclass(frozen=True)
+class Rerunner:
+    """Rolls one policy out, in several processes at once.
+
+    Attributes:
+        settings: The arguments of `load_policy`.
+        folder: The folder of the episodes; those that it holds are reused. The policy does not see
+            it, because it names the fresh sessions.
+        jobs: How many processes.
+        limits: What each process may take.
+    """
+
+    settings: dict[str, Any]
+    folder: Path
+    jobs: int
+    limits: Limits | None = None
+
+    def policy(self) -> IsolatedPolicy:
+        """The policy in a new process.
+
+        Raises:
+            ValueError: If it is not loaded.
+        """
+        self.folder.mkdir(parents=True, exist_ok=True)
+        log, hidden = self.folder / "policy.log", [self.folder]
+        return IsolatedPolicy(self.settings, log, hidden=hidden, limits=self.limits)
+
+    def roll_out(self, runs: Sequence[Run]) -> dict[str, Episodes]:
+        """Roll the policy out.
+
+        Args:
+            runs: What to roll out.
+
+        Returns:
+            The episodes of each run, by its name.
+
+        Raises:
+            ValueError: If the policy ends, answers wrongly or takes too long, or if the folder
+                holds episodes of another policy.
+        """
+        files = self._files(runs)
+        batches = SimpleQueue[Batch]()
+        for batch in _shuffled_batches(files):
+            batches.put(batch)
+        total = sum(len(run.sessions(split)) for run, split in files)
+        there = sum(len(file.episodes) for file in files.values())
+        bar = tqdm(total=total, initial=there, desc="Re-running", unit="episode")
+        with bar, ThreadPoolExecutor(self.jobs) as pool:
+            workers = min(self.jobs, batches.qsize())
+            for worker in [pool.submit(self._work, batches, files, bar) for _ in range(workers)]:
+                worker.result()
+        return {run.name: _in_order(run, files) for run in runs}
+
+    def _files(self, runs: Sequence[Run]) -> Files:
+        with self.policy() as policy:
+            return {
+                (run, split): Evaluator(policy, self.folder / run.name, run.salt).file(split)
+                for run in runs
+                for split in TEST_SPLITS
+            }
+
+    def _work(self, batches: "SimpleQueue[Batch]", files: Files, bar: tqdm) -> None:
+        """Roll out batches in one process until there are no more."""
+        with self.policy() as policy:
+            while not batches.empty():
+                with suppress(Empty):  # another worker may have taken the last one
+                    run, split, sessions = batches.get_nowait()
+                    episodes = roll_out(
+                        policy,
+                        split,
+                        sessions=sessions,
+                        salt=run.salt,
+                        track=policy.track,
+                        quiet=True,
+                    )
+                    for episode in episodes:
+                        files[run, split].append(episode)
+                    bar.update(len(episodes))
+
+
+def rerun_submission(entry: Entry, rerunner: Rerunner, salt: int | None, by: str) -> Verification:
+    """Roll a submission's policy out again and judge the submission.
+
+    Args:
+        entry: The submission, replayed.
+        rerunner: Rolls its policy out.
+        salt: The session seed of the fresh sessions; None draws one.
+        by: Who re-runs.
+
+    Raises:
+        ValueError: If the policy fails, see `Rerunner.roll_out`.
+    """
+    fresh = fresh_run(rerunner.folder, entry.submission.track, salt)
+    first, alone = Run("published-1", 0), Run("alone", 0, alone=True)
+    found = rerunner.roll_out([first, alone, fresh])
+    reruns = [found[first.name]]
+    if needs_more_runs(entry, reruns[0]):
+        more = [Run(f"published-{n}", 0) for n in range(2, STOCHASTIC_RUNS + 1)]
+        reruns += rerunner.roll_out(more).values()
+    return compare(
+        entry,
+        reruns,
+        found[alone.name],
+        found[fresh.name],
+        salt=fresh.salt,
+        by=by,
+        sandbox=has_sandbox(),
+    )
+
+
+def _shuffled_batches(files: Files) -> list[Batch]:
+    """What is still to be rolled out, in an order that nobody can foresee."""
+    generator = np.random.default_rng()
+    batches: list[Batch] = []
+    for (run, split), file in files.items():
+        missing = sorted(set(run.sessions(split)) - {e.session for e in file.episodes})
+        order = generator.permutation(missing).tolist()
+        size = 1 if run.alone else BATCH_SIZE
+        batches += [(run, split, batch) for batch in batched(order, size)]
+    return [batches[i] for i in generator.permutation(len(batches))]
+
+
+def _in_order(run: Run, files: Files) -> Episodes:
+    return {
+        split: sorted(files[run, split].episodes, key=lambda episode: episode.session)
+        for split in TEST_SPLITS
+    }
