@@ -251,7 +251,7 @@ def _within_spread(entry: Entry, reruns: Sequence[Episodes]) -> bool:
         # One run against the mean of R runs: each session adds its variance times 1 + 1/R.
         spread = runs.var(0, ddof=1).sum() / runs.shape[1] ** 2
         variance += (1 + 1 / len(runs)) * spread / len(TEST_SPLITS) ** 2
-    return abs(difference) <= SIGNIFICANT * sqrt(variance)
+    return bool(abs(difference) <= SIGNIFICANT * sqrt(variance))
 
 
 def _named(policy: Policy) -> str:

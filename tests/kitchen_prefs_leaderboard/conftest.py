@@ -83,8 +83,11 @@ def perfect():
 def few_episodes(perfect):
     """Gives the expert's episodes, of which some on the split `seen` pack nothing."""
 
+    def spoilt(e):
+        return replace(e, placed=(0, 0), decisions=e.decisions[::-1], kinds=e.kinds[::-1])
+
     def give(worse=(), salt=0):
-        seen = [replace(e, placed=(0, 0)) if e.session in worse else e for e in perfect["seen"]]
+        seen = [spoilt(e) if e.session in worse else e for e in perfect["seen"]]
         return {
             split: [replace(episode, salt=salt) for episode in episodes]
             for split, episodes in (perfect | {"seen": seen}).items()

@@ -4,10 +4,16 @@ import json
 
 import pytest
 
-from kitchen_prefs_leaderboard.ranking import rank
-from kitchen_prefs_leaderboard.scoring import MEAN, difference, score_submissions
+from kitchen_prefs_leaderboard.ranking import Row, lead, rank
+from kitchen_prefs_leaderboard.scoring import MEAN, score_submissions
 from kitchen_prefs_leaderboard.submission_writing import write_submission
 from kitchen_prefs_leaderboard.verification import compare
+
+
+def confirmed(entry, rerun, fresh):
+    """The record of a re-run."""
+    return compare(entry, [rerun], rerun, fresh, salt=1, by="A. Maintainer", sandbox=True)
+
 
 ALL = range(6)  # all sessions of a split that was cut short
 
@@ -18,7 +24,7 @@ def shown():
 
     def show(entries, again=None):
         verified = {
-            entry.digest: compare(entry, entry.episodes, entry.episodes, 1)
+            entry.digest: confirmed(entry, entry.episodes, entry.episodes)
             for entry in (entries if again is None else again)
         }
         return {
@@ -41,8 +47,8 @@ def test_equal_entries_share_a_rank_and_the_next_one_counts_them(make_entry, sho
 
 def test_a_difference_inside_the_paired_interval_is_a_tie(make_entry, shown):
     best, near = make_entry("a"), make_entry("b", worse=[0])
-    gain = difference(best.episodes, near.episodes)
-    assert gain.low == 0 < gain.mean == -difference(near.episodes, best.episodes).mean
+    gain = lead(Row(best), Row(near))
+    assert gain.low == 0 < gain.mean == -lead(Row(near), Row(best)).mean
     assert shown([near, best]) == {"privileged": [("a", 1, True), ("b", 1, True)]}
 
 
@@ -54,7 +60,7 @@ def test_entries_whose_own_intervals_overlap_may_still_differ(make_entry, shown)
 
 def test_a_row_ties_with_the_first_of_a_rank_not_with_the_last(make_entry, shown):
     first, second, third = (make_entry("abc"[n], worse=range(2 * n)) for n in range(3))
-    assert difference(second.episodes, third.episodes).low == 0
+    assert lead(Row(second), Row(third)).low == 0
     assert shown([first, second, third]) == {
         "privileged": [("a", 1, True), ("b", 1, True), ("c", 3, False)]
     }
@@ -63,11 +69,23 @@ def test_a_row_ties_with_the_first_of_a_rank_not_with_the_last(make_entry, shown
 def test_what_a_rerun_does_not_reach_does_not_count(make_entry):
     inflated, honest = make_entry("a"), make_entry("b", worse=[0])
     records = {
-        "a" * 64: compare(inflated, make_entry("c", worse=range(3)).episodes, honest.episodes, 1),
-        "b" * 64: compare(honest, honest.episodes, honest.episodes, 1),
+        "a" * 64: confirmed(inflated, make_entry("c", worse=range(3)).episodes, honest.episodes),
+        "b" * 64: confirmed(honest, honest.episodes, honest.episodes),
     }
     rows = rank([inflated, honest], records)["privileged"]
     assert [row.entry.submission.name for row in rows] == ["b", "a"]
+
+
+def test_rows_are_ranked_by_the_rerun(make_entry):
+    entries = [make_entry("a"), make_entry("b")]
+    reruns = {"a": make_entry("c", worse=range(5)), "b": make_entry("d")}
+    records = {
+        entry.digest: confirmed(entry, reruns[entry.submission.name].episodes, entry.episodes)
+        for entry in entries
+    }
+    first, second = rank(entries, records)["privileged"]
+    assert (first.entry.submission.name, first.rank, second.rank) == ("b", 1, 2)
+    assert lead(first, second).low > 0 == lead(Row(entries[0]), Row(entries[1])).high
 
 
 def test_rows_that_were_only_replayed_come_last_however_good(make_entry, shown):

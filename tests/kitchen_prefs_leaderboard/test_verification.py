@@ -1,5 +1,7 @@
 """What a re-run must show to confirm a submission, and the records of re-runs."""
 
+import json
+
 import pytest
 
 from kitchen_prefs_leaderboard.ranking import rank
@@ -21,8 +23,17 @@ ALL = range(6)  # all sessions of a split that was cut short
 def found(few_episodes):
     """What a re-run of an entry comes to, in which some sessions go badly."""
 
-    def compared(entry, rerun=(), fresh=()):
-        return compare(entry, few_episodes(rerun), few_episodes(fresh, SALT), SALT)
+    def compared(entry, rerun=(), fresh=(), runs=None, alone=None):
+        reruns = runs or [few_episodes(rerun)]
+        return compare(
+            entry,
+            reruns,
+            alone or reruns[0],
+            few_episodes(fresh, SALT),
+            salt=SALT,
+            by="A. Maintainer",
+            sandbox=True,
+        )
 
     return compared
 
@@ -64,6 +75,43 @@ def test_actions_better_than_the_policy_are_not_confirmed(make_entry, found):
 
 def test_actions_worse_than_the_policy_are_not_confirmed(make_entry, found):
     assert not found(make_entry("a", worse=ALL)).confirmed
+
+
+def test_episodes_that_were_thrown_away_do_not_make_room(make_entry, found, few_episodes):
+    thrown_away = make_entry("a", worse=range(4))  # its own interval is wide
+    runs = [few_episodes(), few_episodes(), few_episodes()]
+    verification = found(thrown_away, runs=runs)
+    assert verification.same < 0.95 < verification.itself
+    assert not verification.repeats
+
+
+@pytest.mark.parametrize(("worse", "confirmed"), [((2,), True), (ALL, False)])
+def test_a_stochastic_policy_is_judged_by_its_own_spread(
+    make_entry, found, few_episodes, worse, confirmed
+):
+    runs = [few_episodes([0, 1]), few_episodes([2, 3]), few_episodes([4, 5])]
+    verification = found(make_entry("a", worse=worse), runs=runs)
+    assert verification.itself < 0.95
+    assert verification.repeats == confirmed
+    assert verification.runs == 3
+    assert verification.scores["seen"] == pytest.approx([0.6666] * 6, abs=0.05)
+
+
+def test_a_policy_whose_episodes_depend_on_each_other_is_not_confirmed(
+    make_entry, found, few_episodes
+):
+    verification = found(make_entry("a"), alone=few_episodes(ALL))
+    assert verification.repeats
+    assert not verification.independent
+    assert not verification.confirmed
+
+
+def test_records_of_the_earlier_procedure_are_still_read(make_entry, found, tmp_path):
+    new = ("procedure", "by", "sandbox", "runs", "itself", "alone", "scores", "independent")
+    old = found(make_entry("a")).model_dump(exclude=set(new))
+    (tmp_path / "old.json").write_text(json.dumps(old))
+    (verification,) = read_verifications(tmp_path).values()
+    assert verification.procedure == 1
 
 
 def test_a_policy_that_knows_the_published_sessions_alone_is_not_confirmed(make_entry, found):
