@@ -94,7 +94,7 @@ def test_a_stochastic_policy_is_judged_by_its_own_spread(
     assert verification.itself < 0.95
     assert verification.repeats == confirmed
     assert verification.runs == 3
-    assert verification.scores["seen"] == pytest.approx([0.6666] * 6, abs=0.05)
+    assert all(0.6 < value < 0.8 for value in verification.scores["seen"])  # one run in three fails
 
 
 def test_a_policy_whose_episodes_depend_on_each_other_is_not_confirmed(
