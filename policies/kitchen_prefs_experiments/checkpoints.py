@@ -10,7 +10,6 @@ from hashlib import sha256
 from pathlib import Path
 
 from huggingface_hub import hf_hub_download
-from huggingface_hub.errors import LocalEntryNotFoundError
 
 from kitchen_prefs.utils.files import write_json
 from kitchen_prefs.utils.hub import check_repo_id, hub_errors
@@ -94,11 +93,5 @@ def _download(repo_id: str, files: list[str]) -> Path:
     """Download files of a model repository into the hub's cache; all lie in one folder."""
     check_repo_id(repo_id)
     with hub_errors(repo_id):
-        try:
-            downloaded = [Path(hf_hub_download(repo_id, file)) for file in files]
-        except LocalEntryNotFoundError as error:
-            raise OSError(
-                f"This checkpoint is not installed, and no hub answers for {repo_id}; unset "
-                "HF_HUB_OFFLINE, or take it from a clone of the repository."
-            ) from error
+        downloaded = [Path(hf_hub_download(repo_id, file)) for file in files]
     return downloaded[0].parent
