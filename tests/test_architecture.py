@@ -50,7 +50,7 @@ EXPERIMENTS = {
     "markdown": "kitchen_prefs.metrics",
     "lerobot_train": "recipes kitchen_prefs.utils",
     "quickstart": (
-        "lerobot_train markdown recipes kitchen_prefs.datasets kitchen_prefs.envs "
+        "lerobot_train markdown kitchen_prefs.datasets kitchen_prefs.envs "
         "kitchen_prefs.evaluation "
         "kitchen_prefs.metrics kitchen_prefs.rendering kitchen_prefs.splits kitchen_prefs.utils"
     ),

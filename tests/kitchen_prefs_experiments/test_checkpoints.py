@@ -86,6 +86,7 @@ def test_record_writes_the_hashes_of_what_is_there(copies):
     assert find_checkpoint("gnn_rl") == copies / "gnn_rl"
 
 
+@pytest.mark.slow
 def test_what_is_not_installed_comes_from_the_hub_verified(hub, model):
     done = kitchen_prefs(hub, "checkpoints", "get", "gnn_rl", f"--repo-id={REPO_ID}")
     assert done.returncode == 0, done.stderr
@@ -99,6 +100,7 @@ def test_what_is_not_installed_comes_from_the_hub_verified(hub, model):
     assert "config.json is not the file that the manifest" in done.stderr
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("repo_id", "environment", "said"),
     [
