@@ -243,7 +243,11 @@ class Hub:
             raise RefusalError(404, "Entry not found", "EntryNotFound")
         return content, {"X-Repo-Commit": commit.oid, "ETag": f'"{git_hash(content)}"'}
 
+    def resolve_model(self, request, repo_id, revision, path):
+        return self.resolve(request, "models", repo_id, revision, path)
 
+
+MODEL = r"(?P<repo_id>[^/]+/[^/]+)"  # a model's address has no kind
 REPOSITORY = r"(?P<kind>datasets|spaces)/(?P<repo_id>[^/]+/[^/]+)"
 ENDPOINTS = {
     # What pushing calls.
@@ -263,6 +267,8 @@ ENDPOINTS = {
     rf"GET /api/{REPOSITORY}/refs": Hub.refs,
     rf"GET /api/{REPOSITORY}/tree/(?P<revision>[^/]+)": Hub.tree,
     rf"(?:HEAD|GET) /{REPOSITORY}/resolve/(?P<revision>[^/]+)/(?P<path>.+)": Hub.resolve,
+    # What downloading a checkpoint calls.
+    rf"(?:HEAD|GET) /{MODEL}/resolve/(?P<revision>[^/]+)/(?P<path>.+)": Hub.resolve_model,
 }
 
 

@@ -23,7 +23,7 @@ BENCHMARK = {
     "splits": "utils",
     "simulation": "preferences splits",
     "physics": "preferences simulation splits utils",
-    "rendering": "physics preferences simulation",
+    "rendering": "physics preferences simulation utils",
     "envs": "instances metrics preferences rendering simulation splits utils",
     "datasets": "envs instances metrics preferences simulation splits utils",
     "evaluation": "envs metrics simulation splits utils",
@@ -39,14 +39,18 @@ POLICIES = {
         "common kitchen_prefs.envs kitchen_prefs.instances kitchen_prefs.preferences "
         "kitchen_prefs.simulation kitchen_prefs.splits kitchen_prefs.utils"
     ),
-    "__init__": "gnn rules ttp kitchen_prefs.envs",
+    "__init__": "gnn rules ttp kitchen_prefs.envs kitchen_prefs.utils",
 }
 EXPERIMENTS = {
     "recipes": "kitchen_prefs.utils",
+    "checkpoints": "kitchen_prefs.utils",
+    "commands": (
+        "checkpoints lerobot_train recipes kitchen_prefs.datasets kitchen_prefs.evaluation"
+    ),
     "markdown": "kitchen_prefs.metrics",
     "lerobot_train": "recipes kitchen_prefs.utils",
     "quickstart": (
-        "lerobot_train markdown recipes kitchen_prefs.datasets kitchen_prefs.envs "
+        "lerobot_train markdown kitchen_prefs.datasets kitchen_prefs.envs "
         "kitchen_prefs.evaluation "
         "kitchen_prefs.metrics kitchen_prefs.rendering kitchen_prefs.splits kitchen_prefs.utils"
     ),
@@ -55,7 +59,8 @@ EXPERIMENTS = {
         "kitchen_prefs.metrics kitchen_prefs.simulation kitchen_prefs.utils"
     ),
     "paper": (
-        "lerobot_train markdown recipes kitchen_prefs.datasets kitchen_prefs.evaluation "
+        "checkpoints lerobot_train markdown recipes kitchen_prefs.datasets "
+        "kitchen_prefs.evaluation "
         "kitchen_prefs.metrics kitchen_prefs.splits kitchen_prefs.utils"
     ),
     "__init__": "",

@@ -13,6 +13,7 @@ import typer
 from kitchen_prefs.cli import command_line
 from kitchen_prefs.splits import SPLITS
 from kitchen_prefs_experiments.paper.readme_table import replace_table
+from kitchen_prefs_experiments.recipes import recipe_file
 
 ROOT = Path(__file__).parents[1]
 README = (ROOT / "README.md").read_text()
@@ -49,8 +50,8 @@ def test_the_environment_needs_ten_lines_and_no_lerobot():
 
 def test_commands_name_recipes_and_splits_that_exist():
     commands = "\n".join(blocks("bash"))
-    for path in re.findall(r"--config_path=(\S+)", commands):
-        assert (ROOT / path).exists()
+    for name in re.findall(r"--recipe=(\S+)", commands):
+        assert recipe_file(name).exists()
     for names in re.findall(r"--(?:split|env\.task)=(\S+)", commands):
         assert set(names.split(",")) <= set(SPLITS)
 

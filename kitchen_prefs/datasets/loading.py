@@ -32,7 +32,8 @@ def load_dataset(name: str) -> "LeRobotDataset":
     root = make_dataset(name)
     from lerobot.datasets import LeRobotDataset  # here, because it takes seconds to import
 
-    return LeRobotDataset(content_of(name).repo_id, root=root)
+    # There are no videos; LeRobot would look for a decoder and log what it does not find.
+    return LeRobotDataset(content_of(name).repo_id, root=root, video_backend="pyav")
 
 
 def make_dataset(name: str, workers: int | None = None) -> Path:

@@ -17,6 +17,7 @@ from kitchen_prefs.simulation.kitchen import IN_RACK
 from kitchen_prefs.simulation.placements import load_placements, load_record
 from kitchen_prefs.simulation.sessions import expert_trajectory, make_session
 from kitchen_prefs.splits import get_split
+from kitchen_prefs.utils.extras import require_mujoco
 
 app = typer.Typer(
     name="physics", help="Make and check where dishes can stand in a rack.", no_args_is_help=True
@@ -32,6 +33,7 @@ def make(seed: Annotated[int, typer.Option(help="Of the random drops.")] = 0) ->
 
     Example: kitchen-prefs physics make-placements --seed 0
     """
+    require_mujoco()
     from kitchen_prefs.physics.placement_search import (
         count,
         describe,
@@ -53,6 +55,7 @@ def check(sessions: Annotated[int, typer.Option(help="How many expert sessions."
 
     Example: kitchen-prefs physics check-placements --sessions 50
     """
+    require_mujoco()
     from kitchen_prefs.physics.carrying import STAY
     from kitchen_prefs.physics.placement_search import count, save_placements, without
 

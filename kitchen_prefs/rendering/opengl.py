@@ -37,7 +37,7 @@ def open_context(width: int, height: int) -> Any:
         if headless and not os.environ.get("MUJOCO_GL"):
             from mujoco.egl import GLContext
         else:
-            from mujoco.rendering.classic.gl_context import GLContext
+            from mujoco.gl_context import GLContext
         context = GLContext(width, height)
         context.make_current()
     except (ImportError, RuntimeError, AttributeError) as error:

@@ -11,8 +11,10 @@ from kitchen_prefs.preferences import RACKS
 from kitchen_prefs.rendering.opengl import NoOpenGLError, open_context
 from kitchen_prefs.rendering.state import SceneState
 from kitchen_prefs.simulation.layout import DOOR_OPEN_ANGLE, RACK_TRAVEL, SINK_POSITION, SINK_SIZE
+from kitchen_prefs.utils.extras import require_mujoco
 
 try:
+    require_mujoco()
     import mujoco
 except (ImportError, AttributeError) as error:  # with MUJOCO_GL set it loads OpenGL at once
     raise NoOpenGLError from error

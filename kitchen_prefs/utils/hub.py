@@ -1,4 +1,4 @@
-"""Uploads to the Hugging Face hub, with the client's errors as one sentence each.
+"""The Hugging Face hub, with its client's errors as one sentence each.
 
 The client, huggingface_hub, finds the token itself: that of `hf auth login`, or HF_TOKEN.
 """
@@ -11,7 +11,12 @@ from pathlib import Path
 from httpx import HTTPError
 from huggingface_hub import CommitInfo, CommitOperationAdd, HfApi
 from huggingface_hub.constants import ENDPOINT
-from huggingface_hub.errors import HfHubHTTPError, HFValidationError, OfflineModeIsEnabled
+from huggingface_hub.errors import (
+    HfHubHTTPError,
+    HFValidationError,
+    LocalEntryNotFoundError,
+    OfflineModeIsEnabled,
+)
 from huggingface_hub.utils import validate_repo_id
 
 REFUSALS = {
@@ -72,6 +77,11 @@ def hub_errors(repo_id: str) -> Iterator[None]:
     """Turn the errors of the hub's client into an OSError of one sentence."""
     try:
         yield
+    except LocalEntryNotFoundError as error:  # nothing in the cache, and no answer
+        raise OSError(
+            f"No hub answers for {repo_id}; unset HF_HUB_OFFLINE, and look after the network and "
+            "the environment variable HF_ENDPOINT."
+        ) from error
     except HfHubHTTPError as error:
         raise OSError(_refusal(error, repo_id)) from error
     except OfflineModeIsEnabled as error:

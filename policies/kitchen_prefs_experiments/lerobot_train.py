@@ -134,8 +134,8 @@ class TrainingRun:
             return
         if not self.settings_file.exists():
             raise ValueError(
-                f"{self.folder} is a run that `kitchen-prefs reproduce` did not start; let it "
-                "finish or delete it."
+                f"{self.folder} is a run of another program; let it finish or delete it, or give "
+                "another folder."
             )
         if json.loads(self.settings_file.read_text()) != _settings(recipe, options):
             raise ValueError(

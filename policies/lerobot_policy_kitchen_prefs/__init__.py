@@ -4,6 +4,9 @@ LeRobot imports this package because of its name; that registers the policies an
 """
 
 import kitchen_prefs.envs.lerobot_env  # noqa: F401  registers --env.type=kitchen_prefs
+from kitchen_prefs.utils.decoder_log import shorten_decoder_warning
 from lerobot_policy_kitchen_prefs import gnn, rules, ttp
 
 __all__ = ["gnn", "rules", "ttp"]
+
+shorten_decoder_warning()  # in lerobot-train, which imports this package first

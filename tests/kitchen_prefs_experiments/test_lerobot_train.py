@@ -84,7 +84,7 @@ def test_a_run_of_another_program_is_left_alone(run, lerobot_train):
     fake = lerobot_train(20)
     run.folder.mkdir()
     (run.folder / "theirs").touch()
-    with pytest.raises(ValueError, match="did not start; let it finish or delete it"):
+    with pytest.raises(ValueError, match="another program; let it finish or delete it"):
         run.train(RECIPE, OPTIONS)
     assert (run.folder / "theirs").exists()
     assert not fake.calls

@@ -1,7 +1,12 @@
-"""On PYTHONPATH, lets a program and all programs that it starts know six sessions a test split."""
+"""On PYTHONPATH, lets a program and all programs that it starts know few sessions a test split."""
 
+import os
 from dataclasses import replace
 
 from kitchen_prefs.splits import SPLITS, TEST_SPLITS
 
-SPLITS.update({name: replace(SPLITS[name], users=SPLITS[name].users[:6]) for name in TEST_SPLITS})
+SESSIONS = int(os.environ.get("SESSIONS_OF_SHORT_SPLITS", "6"))
+
+SPLITS.update(
+    {name: replace(SPLITS[name], users=SPLITS[name].users[:SESSIONS]) for name in TEST_SPLITS}
+)

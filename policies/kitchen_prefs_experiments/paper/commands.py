@@ -45,6 +45,7 @@ def reproduce(
     chosen = {name: get_table(name) for name in tables}
     make_folder(out, "--out")
     make_folder(results, "--results")
+    typer.echo(f"Runs and episodes go to {out}, tables and pictures to {results}.")
     from kitchen_prefs_experiments.paper.figures import draw
     from kitchen_prefs_experiments.paper.learning_curves import run_curves
     from kitchen_prefs_experiments.paper.result_files import write_results
@@ -72,6 +73,11 @@ def write_pages(results: Results = Path("docs/results")) -> None:
     from kitchen_prefs_experiments.paper.result_files import read_results
     from kitchen_prefs_experiments.paper.results_page import pages
 
+    if not read_results(results):
+        raise ValueError(
+            f"{results} holds no results; `kitchen-prefs reproduce TABLE` writes some there, or "
+            "give another --results."
+        )
     for name, text in pages(results).items():
         with atomic_file(results / f"{name}.md") as unfinished:
             unfinished.write_text(text)

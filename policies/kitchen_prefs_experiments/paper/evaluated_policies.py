@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from kitchen_prefs.splits import DATA_VERSION, HELD_OUT_USERS
-from kitchen_prefs_experiments.recipes import recipe_file
+from kitchen_prefs_experiments.checkpoints import find_checkpoint
 
 RECIPE = "ttp_quick"  # the recipe of most trainings: it needs only minutes
 
@@ -31,18 +31,13 @@ class Committed:
     prompts: int = 1
 
     def find(self) -> Path:
-        """Its folder, beside the recipes.
+        """Its folder.
 
         Raises:
-            ValueError: If it is not there.
+            ValueError: If there is no such checkpoint, or if a file differs.
+            OSError: If it is not installed and the hub does not have it.
         """
-        folder = recipe_file(RECIPE).parents[1] / "checkpoints" / self.name
-        if not folder.is_dir():
-            raise ValueError(
-                f"There is no checkpoint {self.name!r} yet; train its recipe and put the best "
-                f"checkpoint's pretrained_model at {folder}."
-            )
-        return folder
+        return find_checkpoint(self.name)
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from kitchen_prefs.utils.files import make_folder
-from kitchen_prefs_experiments.recipes import recipe_file
 
 if TYPE_CHECKING:
     from kitchen_prefs.evaluation.evaluator import Summary
@@ -57,7 +56,7 @@ def quickstart(
     write_learning_curve(run.log_entries(), run.config["log_freq"], out / "learning_curve.png")
     _draw(shown, out)
     typer.echo(f"The table, the learning curve and the pictures are in {out}.")
-    typer.echo(_next_steps(run.checkpoint))
+    typer.echo(_next_steps(run.checkpoint, out))
 
 
 def _train(run: "TrainingRun") -> None:
@@ -71,7 +70,7 @@ def _train(run: "TrainingRun") -> None:
 
 
 def _draw(episode: "Episode", out: Path) -> None:
-    """Draw the pictures, if OpenGL is available; nothing else needs it."""
+    """Draw the pictures, if MuJoCo and OpenGL are available; nothing else needs them."""
     try:
         from kitchen_prefs_experiments.quickstart.episode_pictures import draw_episode
 
@@ -100,11 +99,10 @@ def _evaluate(checkpoint: Path, out: Path) -> tuple[dict[str, dict[str, "Summary
     return summaries, evaluators["TTP"].episodes(split)[session]
 
 
-def _next_steps(checkpoint: Path) -> str:
+def _next_steps(checkpoint: Path, out: Path) -> str:
     return f"""
 Next, on preferences and numbers of dishes that training has not seen; and a longer training:
-  uv run kitchen-prefs evaluate --policy.path={checkpoint} \\
-    --split=unseen_both --out=outputs/quickstart/unseen_both
-  uv run lerobot-train --config_path={recipe_file(RECIPE)} \\
-    --steps=4000 --output_dir=outputs/ttp_longer
+  kitchen-prefs evaluate --policy.path={checkpoint} \\
+    --split=unseen_both --out={out}/unseen_both
+  kitchen-prefs train --recipe={RECIPE} --steps=4000 --out=outputs/ttp_longer
 """

@@ -62,7 +62,8 @@ class DemonstrationStore:
                 f"The data set {meta.repo_id!r} has no column {missing[0]!r}; train on a data set "
                 "of kitchen_prefs, which has it."
             )
-        frames = LeRobotDataset(meta.repo_id, root=meta.root).hf_dataset.with_format("arrow")
+        data = LeRobotDataset(meta.repo_id, root=meta.root, video_backend="pyav")  # has no videos
+        frames = data.hf_dataset.with_format("arrow")
         table = frames.select_columns(wanted)[:]
         chosen, preference, episode = (_numbers(table[name]) for name in wanted[1:])
         sets = _numbers(table[OBS_INSTANCES]).reshape(len(chosen), -1, COLUMNS)  # (T, N, 13)

@@ -15,7 +15,7 @@ def test_an_upright_glass_is_rejected_and_an_inverted_one_kept():
     assert settler.settle(np.array([*FREE_SPOT, 0.075, *UPRIGHT])) is None
     rest = settler.settle(np.array([*FREE_SPOT, 0.075, *INVERTED]))
     assert rest is not None
-    assert rest[2] == pytest.approx(0.069, abs=0.002)
+    assert rest[2] == pytest.approx(0.068, abs=0.003)  # MuJoCo 3.8 and 4.0 differ by 3 mm
 
 
 def test_a_glass_half_outside_the_rack_is_rejected():

@@ -20,7 +20,7 @@ SMALL = ("--policy.dim_pose=16", "--policy.dim_extents=8", "--policy.dim_time=4"
 def test_a_checkpoint_that_is_not_there_is_said_before_anything_runs(tmp_path, monkeypatch):
     missing = Table("", "", "", {"x": Committed("no_such")}, ("seen",), ("PE",))
     monkeypatch.setattr(table_runner, "run_module", pytest.fail)
-    with pytest.raises(ValueError, match="There is no checkpoint 'no_such' yet"):
+    with pytest.raises(ValueError, match="There is no checkpoint 'no_such'"):
         run_table("missing", missing, 32, 1, tmp_path)
 
 

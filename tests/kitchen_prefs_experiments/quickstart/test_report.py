@@ -6,14 +6,15 @@ import numpy as np
 from PIL import Image
 
 from kitchen_prefs.evaluation.evaluator import Summary
-from kitchen_prefs.metrics import METRICS, summarise
+from kitchen_prefs.metrics import METRICS, summarise, wilson_success
 from kitchen_prefs_experiments.lerobot_train import LogEntry
 from kitchen_prefs_experiments.quickstart.report import COLOURS, write_learning_curve, write_table
 
 
 def test_the_table_has_a_row_for_each_policy_and_split(tmp_path, episodes):
     metrics = {name: summarise(episodes, metric) for name, metric in METRICS.items()}
-    summary = Summary("unseen_preferences", len(episodes), metrics, {})
+    wilson = wilson_success(episodes)
+    summary = Summary("unseen_preferences", len(episodes), metrics, wilson, {})
     table = write_table({"symbolic": {"unseen_preferences": summary}}, tmp_path)
     assert f"| {metrics['PE'].mean:.2f} [" in table
     assert "symbolic" in (tmp_path / "table.md").read_text()
