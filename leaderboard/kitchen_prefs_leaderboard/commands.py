@@ -178,8 +178,7 @@ def verify(
     submission = read_known(folder)
     settings = policy_settings(path, policy_type, context.args, submission.description.track)
     rerunner = Rerunner(settings, out / submission.digest[:12], jobs)
-    with rerunner.policy() as policy:
-        verification.check_policy(submission.description, policy_of(policy))
+    verification.check_policy(submission.description, policy_of(rerunner.described))
     (entry,) = replay_submissions([submission], jobs)
     found = rerun_submission(entry, rerunner, salt, by)
     file = verification.write_verification(found, verifications)

@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import batched
 from pathlib import Path
 from queue import Empty, SimpleQueue
@@ -137,13 +138,18 @@ class Rerunner:
                 worker.result()
         return {run.name: _in_order(run, files) for run in runs}
 
-    def _files(self, runs: Sequence[Run]) -> Files:
+    @cached_property
+    def described(self) -> IsolatedPolicy:
+        """The policy as it described itself; its process has ended."""
         with self.policy() as policy:
-            return {
-                (run, split): Evaluator(policy, self.folder / run.name, run.salt).file(split)
-                for run in runs
-                for split in TEST_SPLITS
-            }
+            return policy
+
+    def _files(self, runs: Sequence[Run]) -> Files:
+        return {
+            (run, split): Evaluator(self.described, self.folder / run.name, run.salt).file(split)
+            for run in runs
+            for split in TEST_SPLITS
+        }
 
     def _work(self, batches: "SimpleQueue[Batch]", files: Files, bar: tqdm) -> None:
         """Roll out batches in one process until there are no more."""

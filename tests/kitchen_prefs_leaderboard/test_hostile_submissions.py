@@ -60,9 +60,9 @@ TRICKS = [
 
 
 def write(folder):
-    """Write a well-formed submission."""
+    """Write a well-formed submission, named as its folder is."""
     folder.mkdir()
-    (folder / DESCRIPTION).write_text(json.dumps(ABOUT))
+    (folder / DESCRIPTION).write_text(json.dumps(ABOUT | {"name": folder.name}))
     for split, text in EPISODES.items():
         (folder / ACTIONS[split]).write_bytes(bz2.compress(text))
     return folder

@@ -20,6 +20,7 @@ NO_SANDBOX = (
 # Variables that the process keeps: where programs, libraries and plug-ins are, and nothing else.
 KEPT_VARIABLES = ("PATH", "PYTHONPATH", "LD_LIBRARY_PATH", "VIRTUAL_ENV", "LANG")
 NAMESPACES = (
+    *("setpriv", "--pdeathsig", "KILL"),  # it ends with the evaluation, whatever ends that
     *("unshare", "--user", "--map-root-user", "--net", "--ipc", "--uts", "--mount"),
     *("--pid", "--fork", "--kill-child", "--mount-proc"),
 )
