@@ -66,14 +66,15 @@ EXPERIMENTS = {
     "__init__": "",
 }
 LEADERBOARD = {
-    "submission_format": "kitchen_prefs.envs kitchen_prefs.splits",
+    "visible_text": "",
+    "submission_format": "visible_text kitchen_prefs.envs kitchen_prefs.splits",
     "submission_reading": "submission_format kitchen_prefs.splits",
     "replay": (
         "submission_format submission_reading kitchen_prefs.envs kitchen_prefs.instances "
         "kitchen_prefs.metrics kitchen_prefs.simulation"
     ),
     "scoring": (
-        "replay submission_format submission_reading kitchen_prefs.datasets "
+        "replay submission_format submission_reading visible_text kitchen_prefs.datasets "
         "kitchen_prefs.metrics kitchen_prefs.splits"
     ),
     "recording_reading": (
@@ -99,7 +100,7 @@ LEADERBOARD = {
     "score_formats": "scoring verification kitchen_prefs.metrics",
     "hub_upload": "scoring kitchen_prefs.splits kitchen_prefs.utils",
     "page": (
-        "ranking scoring kitchen_prefs.metrics kitchen_prefs.preferences "
+        "ranking scoring verification kitchen_prefs.metrics kitchen_prefs.preferences "
         "kitchen_prefs.simulation kitchen_prefs.splits kitchen_prefs.utils"
     ),
     "commands": (

@@ -5,6 +5,7 @@ LeRobot and torch take many seconds to import, so the commands import what needs
 """
 
 from collections.abc import Iterable, Sequence
+from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -16,6 +17,7 @@ from kitchen_prefs.evaluation.policy_options import (
     ANY_SETTING,
     PolicyPath,
     PolicyType,
+    check_one_policy,
     settings_of,
 )
 from kitchen_prefs.metrics import FURTHER_METRICS, METRICS, Interval, reference_scores
@@ -24,6 +26,8 @@ from kitchen_prefs.utils.files import make_folder
 
 if TYPE_CHECKING:
     from kitchen_prefs.evaluation.evaluator import Summary
+    from kitchen_prefs.evaluation.isolation.isolated_policy import IsolatedPolicy
+    from kitchen_prefs.evaluation.policy_loading import LoadedPolicy
 
 app = typer.Typer()
 console = Console()
@@ -60,11 +64,17 @@ def evaluate(
     category_accuracy: Annotated[
         bool, typer.Option("--category-accuracy", help="Also evaluate on the expert's states.")
     ] = False,
+    untrusted: Annotated[
+        bool,
+        typer.Option("--untrusted", help="Confine the policy to a process of its own."),
+    ] = False,
 ) -> None:
     """Roll a policy out on splits and print its metrics and failure modes.
 
     OUT holds one line per episode, so a command that was killed resumes.
     Any other --policy.SETTING=VALUE overrides a setting of the policy.
+    With --untrusted the policy receives observations through a pipe and sees nothing else, as in
+    re-runs of the leaderboard.
 
     For example:
     kitchen-prefs evaluate --split=seen,unseen_counts --out=outputs/ttp
@@ -80,18 +90,41 @@ def evaluate(
     from kitchen_prefs.evaluation.evaluator import Evaluator
     from kitchen_prefs.evaluation.policy_loading import load_policy
 
-    loaded_policy = load_policy(path, policy_type, settings, track=track)
-    evaluator = Evaluator(loaded_policy, out, salt, prompts, batch_size)
-    summaries = []
-    for name in names:
-        summary = evaluator.evaluate(
-            name, with_prompt_use=prompt_use, with_category_accuracy=category_accuracy
-        )
-        _print_summary(summary)
-        summaries.append(summary)
-    if len(summaries) > 1:
-        _print_overview(summaries, evaluator.mean_of_splits(names))
+    with ExitStack() as stack:
+        policy: LoadedPolicy | IsolatedPolicy
+        if untrusted:
+            policy = stack.enter_context(_isolated(path, policy_type, settings, track, out))
+        else:
+            policy = load_policy(path, policy_type, settings, track=track)
+        evaluator = Evaluator(policy, out, salt, prompts, batch_size)
+        summaries = []
+        for name in names:
+            summary = evaluator.evaluate(
+                name, with_prompt_use=prompt_use, with_category_accuracy=category_accuracy
+            )
+            _print_summary(summary)
+            summaries.append(summary)
+        if len(summaries) > 1:
+            _print_overview(summaries, evaluator.mean_of_splits(names))
     console.print(f"Episodes and summaries are in {out}.")
+
+
+def _isolated(
+    path: str | None, policy_type: str | None, settings: list[str], track: str | None, out: Path
+) -> "IsolatedPolicy":
+    from kitchen_prefs.evaluation.isolation.isolated_policy import IsolatedPolicy
+    from kitchen_prefs.evaluation.isolation.sandbox import NO_SANDBOX, has_sandbox
+
+    if not has_sandbox():
+        typer.echo(NO_SANDBOX, err=True)
+    check_one_policy(path, policy_type)
+    arguments = {
+        "path": path and str(Path(path).resolve()),
+        "policy_type": policy_type,
+        "options": settings,
+        "track": track,
+    }
+    return IsolatedPolicy(arguments, out / "policy.log", hidden=[out])
 
 
 @app.command()

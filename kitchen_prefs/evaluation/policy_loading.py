@@ -26,6 +26,7 @@ from kitchen_prefs.evaluation.checkpoint_reading import (
     read_processors,
     setting_names,
 )
+from kitchen_prefs.evaluation.policy_options import check_one_policy
 from kitchen_prefs.utils.suggestions import check_settings, suggest
 
 # Settings that do not change what a policy does: where it runs, where it is stored, and what would
@@ -138,8 +139,7 @@ def load_policy(
             unknown, damaged or not trained, has no such setting, or does not fit the environment.
     """
     register_third_party_plugins()
-    if (path is None) == (policy_type is None):
-        raise ValueError("Give either --policy.path=CHECKPOINT or --policy.type=TYPE.")
+    check_one_policy(path, policy_type)
     try:
         if path:
             return _trained(find_checkpoint(path), options, track)

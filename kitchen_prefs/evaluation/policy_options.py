@@ -37,3 +37,13 @@ def settings_of(arguments: Sequence[str]) -> list[str]:
                 f"There is no option {argument!r}; a policy's setting is --policy.SETTING=VALUE."
             )
     return [f"--{argument.removeprefix('--policy.')}" for argument in arguments]
+
+
+def check_one_policy(path: str | None, policy_type: str | None) -> None:
+    """Make sure that either a checkpoint or a type of policy is given.
+
+    Raises:
+        ValueError: If none or both are.
+    """
+    if (path is None) == (policy_type is None):
+        raise ValueError("Give either --policy.path=CHECKPOINT or --policy.type=TYPE.")

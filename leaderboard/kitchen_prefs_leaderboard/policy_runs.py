@@ -9,7 +9,7 @@ from typing import Any
 from kitchen_prefs.evaluation.checkpoint_reading import find_checkpoint
 from kitchen_prefs.evaluation.episode_files import read_episodes, read_header
 from kitchen_prefs.evaluation.policy_loading import LoadedPolicy, load_policy
-from kitchen_prefs.evaluation.policy_options import settings_of
+from kitchen_prefs.evaluation.policy_options import check_one_policy, settings_of
 from kitchen_prefs.metrics import Episode
 from kitchen_prefs.splits import TEST_SPLITS, get_split
 from kitchen_prefs.utils.processes import run_module
@@ -116,6 +116,7 @@ def policy_settings(
     """
     if track not in TRACKS:
         raise ValueError(f"There is no track {track!r}. {suggest(track, TRACKS)}")
+    check_one_policy(path, policy_type)
     return {
         "path": path and str(find_checkpoint(path).resolve()),
         "policy_type": policy_type,

@@ -22,6 +22,7 @@ from kitchen_prefs.splits import DATA_VERSION, TEST_SPLITS
 from kitchen_prefs_leaderboard.replay import replay_split
 from kitchen_prefs_leaderboard.submission_format import Submission
 from kitchen_prefs_leaderboard.submission_reading import SubmissionFiles, read_submission
+from kitchen_prefs_leaderboard.visible_text import alike_key
 
 MEAN = "mean"  # used like a split's name, for the mean in which each split counts the same
 
@@ -104,10 +105,11 @@ def _check_names(submissions: Sequence[SubmissionFiles]) -> None:
     folders: dict[str, Path] = {}
     for submission in submissions:
         name = submission.description.name
-        other = folders.setdefault(name.casefold(), submission.folder)
+        other = folders.setdefault(alike_key(name), submission.folder)
         if other is not submission.folder:
             raise ValueError(
-                f"{submission.folder} and {other} are both named {name!r}; rename or leave out one."
+                f"{submission.folder} and {other} are both named {name!r}, or nearly; rename or "
+                "leave out one."
             )
 
 

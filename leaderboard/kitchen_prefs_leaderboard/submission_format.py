@@ -10,10 +10,18 @@ FOLDER/
 from importlib.metadata import version
 from typing import Annotated, Literal, get_args
 
-from pydantic import BaseModel, ConfigDict, Field, StringConstraints, ValidationError
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    ConfigDict,
+    Field,
+    StringConstraints,
+    ValidationError,
+)
 
 from kitchen_prefs.envs.environment import MAX_EPISODE_STEPS
 from kitchen_prefs.splits import TEST_SPLITS
+from kitchen_prefs_leaderboard.visible_text import check_public_link, check_visible
 
 FORMAT = 1  # the version of this format
 DESCRIPTION = "submission.json"
@@ -30,9 +38,14 @@ TRACKS: tuple[str, ...] = get_args(Track)
 # Words separated by single spaces, without control characters and line breaks, because a terminal
 # shows names; they begin with a letter or digit, because a spreadsheet would evaluate "=".
 WORDS = r"^[\p{L}\p{N}][^\p{C}\p{Z}]*( [^\p{C}\p{Z}]+)*$"
-Text = Annotated[str, StringConstraints(max_length=200, pattern=WORDS)]
-Name = Annotated[str, StringConstraints(max_length=60, pattern=WORDS)]
-Link = Annotated[str, StringConstraints(max_length=300, pattern=r"^https?://[^\s\p{C}\"'<>]+$")]
+VISIBLE = AfterValidator(check_visible)
+Text = Annotated[str, StringConstraints(max_length=200, pattern=WORDS), VISIBLE]
+Name = Annotated[str, StringConstraints(max_length=60, pattern=WORDS), VISIBLE]
+Link = Annotated[
+    str,
+    StringConstraints(max_length=300, pattern=r"^https?://[^\s\p{C}\"'<>]+$"),
+    AfterValidator(check_public_link),
+]
 Hash = Annotated[str, StringConstraints(pattern=r"^[0-9a-f]{64}$")]  # SHA-256, hexadecimal
 # A pose in the kitchen, which is some metres wide: position (m) and quaternion (wxyz).
 FARTHEST = 1000

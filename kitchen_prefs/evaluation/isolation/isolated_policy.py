@@ -20,6 +20,7 @@ from kitchen_prefs.evaluation.isolation.sandbox import confined, scrubbed_enviro
 
 PROGRAM = "kitchen_prefs.evaluation.isolation.policy_process"
 ACTION_BYTES = 7 * 4  # a pose of float32
+MOST_SAID = 300  # characters of what its process says
 
 
 @dataclass(frozen=True)
@@ -138,6 +139,8 @@ class IsolatedPolicy:
     def _introduce(self) -> None:
         with self._answering("load", self._limits.loading):
             head, _ = receive(self._pipe_out, 0)
+            if isinstance(head.get("refused"), str):
+                raise ValueError(printable(head["refused"]))
             named = (head.get(name) for name in ("type", "fingerprint", "track"))
             if not (all(isinstance(n, str) for n in named) and "parameters" in head):
                 raise PipeClosedError
@@ -168,3 +171,8 @@ class IsolatedPolicy:
     def _kill(self) -> None:
         if self._process.poll() is None:
             os.killpg(self._process.pid, signal.SIGKILL)
+
+
+def printable(text: str) -> str:
+    """What a stranger's process says, as a terminal may show it."""
+    return "".join(c if c.isprintable() else "?" for c in text[:MOST_SAID])

@@ -39,7 +39,11 @@ def serve(settings: dict, requests: BinaryIO, replies: BinaryIO) -> None:
 
     from kitchen_prefs.evaluation.policy_loading import load_policy
 
-    loaded = load_policy(**settings)
+    try:
+        loaded = load_policy(**settings)
+    except ValueError as error:  # a sentence for whoever named the policy
+        send(replies, refused=str(error))
+        return
     send(
         replies,
         type=loaded.type,

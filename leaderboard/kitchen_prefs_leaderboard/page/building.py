@@ -32,6 +32,7 @@ from kitchen_prefs_leaderboard.page.page_data import (
 )
 from kitchen_prefs_leaderboard.ranking import Row
 from kitchen_prefs_leaderboard.scoring import MEAN
+from kitchen_prefs_leaderboard.verification import rerun_score
 
 TEMPLATES = files("kitchen_prefs_leaderboard.page") / "templates"
 # Joined in this order into one script.
@@ -97,11 +98,8 @@ def _entry_data(row: Row) -> dict[str, Any]:
         "digest": entry.digest,
         "rank": row.rank,
         "tied": row.tied,
-        "verification": verification and verification.model_dump(exclude={"digest"}),
-        "metrics": {
-            split: {name: _numbers(interval) for name, interval in of_split.items()}
-            for split, of_split in entry.metrics.items()
-        },
+        "verification": verification and verification.model_dump(exclude={"digest", "scores"}),
+        "metrics": _metrics(row),
         "by_count": {
             name: _by_count([episode for split in splits for episode in entry.episodes[split]])
             for name, splits in BY_COUNT.items()
@@ -112,6 +110,18 @@ def _entry_data(row: Row) -> dict[str, Any]:
             for split, episodes in entry.episodes.items()
         },
     }
+
+
+def _metrics(row: Row) -> dict[str, dict[str, list[float]]]:
+    """Every metric of the replay; Score is the re-run's where its record has it."""
+    metrics = {
+        split: {name: _numbers(interval) for name, interval in of_split.items()}
+        for split, of_split in row.entry.metrics.items()
+    }
+    if row.verification and row.verification.scores:
+        for split, of_split in metrics.items():
+            of_split["Score"] = _numbers(rerun_score(row.entry, row.verification, split))
+    return metrics
 
 
 def _by_count(episodes: Sequence[Episode]) -> list[list[float]]:

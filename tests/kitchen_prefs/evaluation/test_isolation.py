@@ -10,10 +10,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from act_checkpoints import call
 from hypothesis import given
 from hypothesis import strategies as st
 
 from kitchen_prefs.envs.environment import DishwasherLoading
+from kitchen_prefs.evaluation.episode_files import read_episodes
 from kitchen_prefs.evaluation.isolation import isolated_policy
 from kitchen_prefs.evaluation.isolation.isolated_policy import IsolatedPolicy, Limits
 from kitchen_prefs.evaluation.isolation.messages import PipeClosedError, receive, send
@@ -92,6 +94,19 @@ def test_a_policy_that_looks_for_the_expert_finds_nothing(attackers, tmp_path):
     assert "BREACH" not in said
     assert all(packing_efficiency(episode) < 0.5 for episode in episodes)
     assert not list(ATTACKERS.rglob("written"))
+
+
+@pytest.mark.lerobot
+def test_evaluate_untrusted_gives_the_episodes_of_evaluate(few_sessions, tmp_path):
+    rule = ("--policy.type=rules", "--policy.rule=nearest")
+    for name, options in (("here", ()), ("isolated", ("--untrusted",))):
+        result = call("evaluate", "--split=val", f"--out={tmp_path / name}", *rule, *options)
+        assert result.exit_code == 0
+    here, isolated = (read_episodes(tmp_path / name / "val.jsonl") for name in ("here", "isolated"))
+    assert here == isolated
+    arguments = ("--split=val", f"--out={tmp_path / 'x'}", "--untrusted", "--policy.a=1")
+    with pytest.raises(ValueError, match="^The policy has no setting 'a'"):
+        call("evaluate", *rule, *arguments)
 
 
 @pytest.mark.skipif(not has_sandbox(), reason="needs setpriv")

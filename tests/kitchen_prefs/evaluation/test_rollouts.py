@@ -2,7 +2,6 @@
 
 import json
 from dataclasses import replace
-from types import SimpleNamespace
 from typing import cast
 
 import numpy as np
@@ -26,7 +25,7 @@ class Lowest:
 
     fingerprint = "lowest"
     track = "standard"
-    policy = SimpleNamespace(config=SimpleNamespace(type="lowest"))
+    type = "lowest"
 
     def __init__(self) -> None:
         self.decisions = 0

@@ -25,11 +25,17 @@ function rankOf(entry) {
 }
 
 function badges(entry) {
-  const rerun = entry.rank !== null;
+  const { verification } = entry;
+  const isolated = verification !== null && verification.procedure > 1;
+  const rerun = isolated ? "re-run" : "re-run, earlier procedure";
   return html(
     "span",
     { class: "badges" },
-    html("span", { class: rerun ? "badge good" : "badge" }, rerun ? "re-run" : "replayed only"),
+    html(
+      "span",
+      { class: isolated ? "badge good" : "badge" },
+      verification === null ? "replayed only" : rerun,
+    ),
   );
 }
 
@@ -57,12 +63,22 @@ function about(entry) {
   );
 }
 
-function rerunText({ same, replayed, rerun, fresh, salt }) {
+function rerunText({ same, replayed, rerun, fresh, salt, by, runs, alone, sandbox }) {
   const fresher = `fresh sessions (seed ${salt})`;
   const scores = [["replayed", replayed], ["re-run", rerun], [fresher, fresh]];
   const parts = scores.map(([name, { mean, low, high }]) =>
     `${name} ${fixed(mean)} (${fixed(low)} to ${fixed(high)})`);
-  return `${Math.round(100 * same)} % of the episodes have the same decisions. Score: ${parts.join(", ")}.`;
+  const percent = (share) => `${Math.round(100 * share)} %`;
+  const facts = [
+    `${percent(same)} of the episodes have the same decisions`,
+    `Score: ${parts.join(", ")}`,
+  ];
+  if (alone !== null) {
+    const where = sandbox ? "a confined process" : "a process";
+    facts.push(`By ${by}, in ${where} of its own, ${runs === 1 ? "once" : `${runs} times`}`);
+    facts.push(`${percent(alone)} of the episodes that were rolled out alone went alike`);
+  }
+  return `${facts.join(". ")}.`;
 }
 
 function rowOf(entry, columns) {

@@ -1,0 +1,66 @@
+"""Names and links as attackers have written them."""
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from kitchen_prefs_leaderboard.visible_text import alike_key, check_public_link, check_visible
+
+
+@pytest.mark.parametrize(
+    ("name", "why"),
+    [
+        ("\u3164" * 4, "normal form"),  # Hangul fillers, which NFKC replaces by another filler
+        ("\u1160" * 4, "invisible"),
+        ("ttp_plus\ufe0f", "invisible"),
+        ("ttp\u034f_plus", "invisible"),
+        ("ttp_\u0440lus", "several scripts"),
+        ("e\u0323\u0330\u0331\u0332", "normal form|stacked"),
+        ("\u05d0\u05d1\u05d2 12", "right-to-left"),
+        ("\u2800" * 40, "invisible"),
+        ("1+cmd|' /C calc'!A0", r"character \|"),
+        ("\uff54\uff54\uff50", "normal form"),
+    ],
+)
+def test_a_name_that_shows_something_else_is_refused(name, why):
+    with pytest.raises(ValueError, match=why):
+        check_visible(name)
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["ttp_plus", "My TTP (v2)", "\u0141ukasz", "\u504f\u597d\u30c6\u30b9\u30c8", "\u03a9\u03bc"],
+)
+def test_honest_names_are_names(name):
+    assert check_visible(name) == name
+
+
+@given(st.text("abcXYZ012 _-.", min_size=1))
+def test_what_is_plain_is_visible(name):
+    assert check_visible(name) == name
+
+
+def test_names_that_read_alike_have_one_key():
+    assert alike_key("TTP plus") == alike_key("ttp_plus") == alike_key("ttp-pl\u00fas")
+    assert alike_key("ttp_plus") != alike_key("ttp_plus2")
+
+
+@pytest.mark.parametrize(
+    "link",
+    [
+        "https://github.com@evil.example/",
+        "http://127.0.0.1:8000/admin",
+        "http://127.0.0.1/",
+        "http://localhost/",
+        "https://g\u0456thub.com/",
+        "http://printer.local/",
+        "http://[::1]/",
+    ],
+)
+def test_a_link_to_something_else_is_refused(link):
+    with pytest.raises(ValueError, match="a link names a"):
+        check_public_link(link)
+
+
+def test_a_link_to_a_public_page_is_a_link():
+    assert check_public_link("https://example.org/a?b=c#d") == "https://example.org/a?b=c#d"
