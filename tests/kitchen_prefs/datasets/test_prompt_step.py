@@ -7,6 +7,8 @@ import pytest
 import torch
 from lerobot.configs import PipelineFeatureType
 from lerobot.datasets import LeRobotDataset
+from lerobot.policies import make_policy
+from lerobot.policies.act.configuration_act import ACTConfig
 from lerobot.processor import PolicyProcessorPipeline, ProcessorStepRegistry
 from lerobot.processor.converters import batch_to_transition, transition_to_batch
 
@@ -156,3 +158,12 @@ def test_it_is_registered_and_states_its_feature():
     assert ProcessorStepRegistry.get("kitchen_prefs_prompt") is PromptStep
     features = PromptStep().transform_features({PipelineFeatureType.OBSERVATION: {}})
     assert features[PipelineFeatureType.OBSERVATION]["observation.prompt"].shape == (1664, 14)
+
+
+def test_it_learns_from_the_policy_where_the_data_set_lies(dataset):
+    config = ACTConfig(
+        device="cpu", dim_model=32, dim_feedforward=32, chunk_size=1, n_action_steps=1
+    )
+    assert PromptStep.from_config(config) == PromptStep()
+    make_policy(config, ds_meta=dataset.meta)
+    assert PromptStep.from_config(config, seed=2) == step_of(dataset, seed=2)
