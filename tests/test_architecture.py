@@ -44,7 +44,9 @@ POLICIES = {
         "common kitchen_prefs.envs kitchen_prefs.instances kitchen_prefs.preferences "
         "kitchen_prefs.simulation kitchen_prefs.splits kitchen_prefs.utils"
     ),
-    "__init__": "gnn rules ttp kitchen_prefs.envs kitchen_prefs.utils",
+    "__init__": (
+        "common gnn rules ttp kitchen_prefs.datasets kitchen_prefs.envs kitchen_prefs.utils"
+    ),
 }
 EXPERIMENTS = {
     "recipes": "kitchen_prefs.utils",

@@ -89,6 +89,11 @@ def test_the_example_is_short():
     assert sum(len(module.read_text().splitlines()) for module in modules) <= 150
 
 
+def test_the_page_shows_the_examples_processor():
+    page = (ROOT / "docs" / "bring_your_policy.md").read_text()
+    assert (EXAMPLE / "lerobot_policy_deepsets" / "processor_deepsets.py").read_text() in page
+
+
 def test_a_resumed_training_repeats_an_unbroken_one(run, trained):
     first, unbroken = (weights(trained / "checkpoints" / step) for step in ("000002", "000004"))
     run(
