@@ -10,6 +10,7 @@ import typer
 
 from benchmarks.data import loader_samples, making_episodes
 from benchmarks.kitchen import kitchen_decisions
+from benchmarks.prompts import prompt_steps
 from benchmarks.training import training_steps
 
 
@@ -20,7 +21,14 @@ def main(out: Path = Path("outputs/benchmarks.json")) -> None:
     uv run python -m benchmarks
     """
     results = []
-    for measure in (kitchen_decisions, making_episodes, loader_samples, training_steps):
+    measures = (
+        kitchen_decisions,
+        making_episodes,
+        loader_samples,
+        training_steps,
+        prompt_steps,
+    )
+    for measure in measures:
         for result in measure():
             results.append(result)
             typer.echo(result)

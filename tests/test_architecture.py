@@ -32,14 +32,21 @@ BENCHMARK = {
 }
 # What stands on it. An arrow into the benchmark names its room, one within a package only the room.
 POLICIES = {
-    "common": "kitchen_prefs.envs kitchen_prefs.instances kitchen_prefs.simulation",
-    "ttp": "common kitchen_prefs.envs kitchen_prefs.instances kitchen_prefs.simulation",
-    "gnn": "common kitchen_prefs.envs kitchen_prefs.instances kitchen_prefs.preferences",
+    "common": (
+        "kitchen_prefs.datasets kitchen_prefs.envs kitchen_prefs.instances kitchen_prefs.simulation"
+    ),
+    "ttp": "common kitchen_prefs.datasets kitchen_prefs.envs kitchen_prefs.instances",
+    "gnn": (
+        "common kitchen_prefs.datasets kitchen_prefs.envs kitchen_prefs.instances "
+        "kitchen_prefs.preferences"
+    ),
     "rules": (
         "common kitchen_prefs.envs kitchen_prefs.instances kitchen_prefs.preferences "
         "kitchen_prefs.simulation kitchen_prefs.splits kitchen_prefs.utils"
     ),
-    "__init__": "gnn rules ttp kitchen_prefs.envs kitchen_prefs.utils",
+    "__init__": (
+        "common gnn rules ttp kitchen_prefs.datasets kitchen_prefs.envs kitchen_prefs.utils"
+    ),
 }
 EXPERIMENTS = {
     "recipes": "kitchen_prefs.utils",

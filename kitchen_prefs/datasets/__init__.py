@@ -1,4 +1,4 @@
-"""Data sets by name: make, load, verify, push.
+"""Data sets by name: make, load, verify, push, and draw prompts from.
 
 names         the grammar of the names, and where a data set lies
 columns       what a frame holds, and the content fingerprint
@@ -10,6 +10,9 @@ cards         a card for each data set
 hub_upload    to the Hugging Face hub
 publishing    fingerprints and cards of the published data sets
 commands      `kitchen-prefs datasets`
+
+demonstration_store  the demonstrations of a data set in memory
+prompt_step          the prompts of a policy's training, a processor step of LeRobot's
 """
 
 from kitchen_prefs.datasets.loading import load_dataset, make_dataset

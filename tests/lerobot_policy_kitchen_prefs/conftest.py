@@ -6,14 +6,14 @@ import torch
 from lerobot.datasets import LeRobotDataset
 
 from kitchen_prefs.datasets import make_dataset
+from kitchen_prefs.datasets.demonstration_store import PLACE, DemonstrationStore
 from kitchen_prefs.envs.demonstrations import demonstrate, prompt_of
 from kitchen_prefs.instances import IS_PLACE, is_place_decision, is_real, unpad
 from kitchen_prefs.simulation.sessions import make_session
 from lerobot_policy_kitchen_prefs.common.categories import Categories
-from lerobot_policy_kitchen_prefs.common.demonstration_store import PLACE, DemonstrationStore
 from lerobot_policy_kitchen_prefs.common.instance_sets import chosen_rows
+from lerobot_policy_kitchen_prefs.common.rack_poses import RackPoses
 from lerobot_policy_kitchen_prefs.ttp.prompt_pairing import make_pairs
-from lerobot_policy_kitchen_prefs.ttp.rack_poses import RackPoses
 
 NAME = "dishwasher-train-p2-d3-v1"  # two preferences, three demonstrations each
 

@@ -6,9 +6,8 @@ import numpy as np
 import torch
 from torch import Tensor
 
+from kitchen_prefs.datasets.demonstration_store import DemonstrationStore
 from kitchen_prefs.instances import EXTENTS, IS_PLACE
-
-from .demonstration_store import DemonstrationStore
 
 TOLERANCE = 1e-4  # m: below every difference between two dishes, above the rounding of float32
 

@@ -9,11 +9,11 @@ as they are.
 import torch
 from torch import Tensor, nn
 
+from kitchen_prefs.datasets.demonstration_store import PLACE, DemonstrationStore
 from kitchen_prefs.envs.observations import EXTENT_NOISE, POSITION_NOISE
 from kitchen_prefs.instances import EXTENTS, POSE
 
 from .categories import nearest_noisy_category
-from .demonstration_store import PLACE, DemonstrationStore
 
 CAPACITY = 1024  # places; a constant shape is what LeRobot can load. Demonstrations show 673
 # What is further off than five standard deviations of perception's errors is unknown.

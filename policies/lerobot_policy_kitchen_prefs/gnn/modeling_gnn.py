@@ -14,12 +14,12 @@ from lerobot.policies import PreTrainedPolicy
 from lerobot.utils.constants import ACTION
 from torch import Tensor, nn
 
+from kitchen_prefs.datasets.demonstration_store import DemonstrationStore
 from kitchen_prefs.envs.lerobot_env import OBS_INSTANCES, OBS_PREFERENCE
 from kitchen_prefs.instances import POSE, is_place_decision
 from kitchen_prefs.preferences import TWELVE
 
 from ..common.categories import Categories
-from ..common.demonstration_store import DemonstrationStore
 from ..common.denoising import Denoiser
 from ..common.failed_choices import FailedChoices, synthesise_failures
 from ..common.instance_sets import accuracies, chosen_rows

@@ -11,15 +11,17 @@ from lerobot.policies import PreTrainedPolicy
 from lerobot.utils.constants import ACTION
 from torch import Tensor, nn
 
+from kitchen_prefs.datasets.demonstration_store import DemonstrationStore
 from kitchen_prefs.envs.lerobot_env import OBS_INSTANCES, OBS_PROMPT
 from kitchen_prefs.instances import POSE, choosable, is_place_decision
 
 from ..common.categories import Categories
-from ..common.demonstration_store import DemonstrationStore
 from ..common.denoising import Denoiser
 from ..common.failed_choices import FailedChoices, synthesise_failures
 from ..common.instance_sets import accuracies, chosen_rows, length_buckets
 from ..common.lerobot_features import observed
+from ..common.rack_poses import RackPoses
+from ..common.relabelling import relabel
 from ..common.weight_loading import misfit_in_a_sentence
 from .compact_network import CompactNetwork
 from .configuration_ttp import TTPConfig
@@ -27,8 +29,6 @@ from .context_history import ContextHistory, split_history
 from .network import Situations, TTPNetwork
 from .prompt_pairing import Pairs, make_pairs
 from .prompt_tokens import split_prompts, tokens_of_prompts
-from .rack_poses import RackPoses
-from .relabelling import relabel
 from .transformer import Tokens
 
 
@@ -142,7 +142,11 @@ class TTPPolicy(PreTrainedPolicy):
         )
         failed = torch.zeros(pairs.sets.shape[:2], dtype=torch.bool, device=pairs.sets.device)
         if self.training and self.config.relabel:
-            pairs = relabel(pairs, self.categories, self.rack_poses, generator)
+            prompts, relabelled = relabel(
+                *(pairs.prompts, pairs.sets, pairs.prompt_of),
+                *(self.categories, self.rack_poses, generator),
+            )
+            pairs = pairs._replace(prompts=prompts, sets=relabelled)
         if self.training and self.config.failures:
             failed = synthesise_failures(pairs.sets, pairs.targets, self.categories, generator)
         return pairs, Situations(pairs.sets, failed, history[pairs.sample])

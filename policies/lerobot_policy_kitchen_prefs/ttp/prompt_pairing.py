@@ -16,9 +16,8 @@ import numpy as np
 import torch
 from torch import Tensor
 
+from kitchen_prefs.datasets.demonstration_store import DemonstrationStore
 from kitchen_prefs.instances import is_place_decision
-
-from ..common.demonstration_store import DemonstrationStore
 
 
 class Pairs(NamedTuple):

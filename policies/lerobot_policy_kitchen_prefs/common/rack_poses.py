@@ -6,11 +6,11 @@ import numpy as np
 import torch
 from torch import Tensor
 
+from kitchen_prefs.datasets.demonstration_store import DemonstrationStore
 from kitchen_prefs.instances import CHOSEN, IS_PLACE, POSE
 
-from ..common.categories import Categories
-from ..common.demonstration_store import DemonstrationStore
-from ..common.dish_locations import in_rack, in_top_rack
+from .categories import Categories
+from .dish_locations import in_rack, in_top_rack
 
 RACKS = 2  # 0 the bottom one, 1 the top one
 

@@ -8,15 +8,22 @@ from hypothesis import strategies as st
 from kitchen_prefs.instances import CHOSEN, EXTENTS, IS_OBJECT, IS_PLACE, POSE
 from kitchen_prefs.simulation.layout import COUNTER_HEIGHT
 from lerobot_policy_kitchen_prefs.common.dish_locations import in_rack, in_top_rack
+from lerobot_policy_kitchen_prefs.common.relabelling import relabel
 from lerobot_policy_kitchen_prefs.ttp.prompt_tokens import tokens_of_prompts
-from lerobot_policy_kitchen_prefs.ttp.relabelling import relabel
 
 HEIGHT, ELEVATION = 2, 5  # columns
 SEEDS = st.integers(0, 10_000)
 
 
+def relabelled_pairs(pairs, categories, rack_poses, generator):
+    prompts, sets = relabel(
+        pairs.prompts, pairs.sets, pairs.prompt_of, categories, rack_poses, generator
+    )
+    return pairs._replace(prompts=prompts, sets=sets)
+
+
 def test_relabelling_keeps_how_many_dishes_stand_in_each_rack(pairs, categories, rack_poses):
-    relabelled = relabel(pairs, categories, rack_poses, np.random.default_rng(0))
+    relabelled = relabelled_pairs(pairs, categories, rack_poses, np.random.default_rng(0))
     counts = []
     for prompts in (pairs.prompts, relabelled.prompts):
         tokens, mask = tokens_of_prompts(prompts, "final")
@@ -30,7 +37,7 @@ def test_relabelling_keeps_how_many_dishes_stand_in_each_rack(pairs, categories,
 def test_relabelling_permutes_extents_and_sets_dishes_on_the_counter(
     pairs, categories, rack_poses, seed
 ):
-    relabelled = relabel(pairs, categories, rack_poses, np.random.default_rng(seed))
+    relabelled = relabelled_pairs(pairs, categories, rack_poses, np.random.default_rng(seed))
     for before, after in ((pairs.prompts, relabelled.prompts), (pairs.sets, relabelled.sets)):
         kept = [c for c in range(before.shape[-1]) if c not in (0, 1, 2, ELEVATION)]
         elsewhere = ~_stands_in_rack(before, categories)
@@ -48,7 +55,7 @@ def test_relabelling_permutes_extents_and_sets_dishes_on_the_counter(
 def test_relabelled_dishes_stand_in_the_same_rack_as_such_dishes_do(
     pairs, demonstrations, categories, rack_poses, seed
 ):
-    relabelled = relabel(pairs, categories, rack_poses, np.random.default_rng(seed))
+    relabelled = relabelled_pairs(pairs, categories, rack_poses, np.random.default_rng(seed))
     rows = demonstrations.rows
     known = rows[(rows[:, IS_PLACE] > 0) & (rows[:, CHOSEN] > 0)]
     shown = {(tuple(row[EXTENTS]), tuple(row[POSE])) for row in known.tolist()}
@@ -81,7 +88,7 @@ def _stands_on_counter(rows):
 
 
 def test_prompt_and_situation_are_relabelled_alike(pairs, categories, rack_poses):
-    relabelled = relabel(pairs, categories, rack_poses, np.random.default_rng(0))
+    relabelled = relabelled_pairs(pairs, categories, rack_poses, np.random.default_rng(0))
     seen = [{} for _ in pairs.prompts]
     is_pick = ~(pairs.sets[..., IS_PLACE] > 0).any(dim=1)
     for g, sets, new in (

@@ -21,9 +21,8 @@ from torch import Tensor
 from kitchen_prefs.instances import EXTENTS, POSE, POSITION, is_place_decision
 from kitchen_prefs.simulation.layout import COUNTER_HEIGHT
 
-from ..common.categories import Categories
-from ..common.dish_locations import on_counter
-from .prompt_pairing import Pairs
+from .categories import Categories
+from .dish_locations import on_counter
 from .rack_poses import RackPoses
 
 HEIGHT = EXTENTS.stop - 1  # the columns of the vertical extent and of the vertical position
@@ -31,21 +30,28 @@ ELEVATION = POSITION.stop - 1
 
 
 def relabel(
-    pairs: Pairs, categories: Categories, rack_poses: RackPoses, generator: np.random.Generator
-) -> Pairs:
+    prompts: Tensor,
+    sets: Tensor,
+    prompt_of: Tensor,
+    categories: Categories,
+    rack_poses: RackPoses,
+    generator: np.random.Generator,
+) -> tuple[Tensor, Tensor]:
     """Relabel each prompt by a permutation of its own, and its pick situations by the same.
 
     Args:
-        pairs: Prompts and situations, observed without noise.
+        prompts: Demonstrations, observed without noise, (G, P, 14).
+        sets: Situations, observed without noise, (S, N, 13).
+        prompt_of: The prompt of each situation, (S,) int64.
         categories: The categories to permute.
         rack_poses: The poses of each category in the racks.
         generator: Source of randomness.
 
     Returns:
-        The pairs, relabelled.
+        The prompts and the situations, relabelled.
     """
-    identity = np.tile(np.arange(len(categories)), (len(pairs.prompts), 1))
-    permutations = torch.from_numpy(generator.permuted(identity, axis=1)).to(pairs.sets.device)
+    identity = np.tile(np.arange(len(categories)), (len(prompts), 1))
+    permutations = torch.from_numpy(generator.permuted(identity, axis=1)).to(sets.device)
 
     def permute(rows: Tensor, permutations: Tensor) -> Tensor:  # (B, N, D), (B, C) -> (B, N, D)
         old, has_category = categories.find(rows)  # (B, N) each
@@ -57,7 +63,7 @@ def relabel(
         relabelled[..., ELEVATION] = upright.where(on_counter(rows), relabelled[..., ELEVATION])
         return relabelled.where(has_category[..., None], rows)
 
-    is_pick = ~is_place_decision(pairs.sets)  # (S,)
-    sets = pairs.sets.clone()
-    sets[is_pick] = permute(sets[is_pick], permutations[pairs.prompt_of[is_pick]])
-    return pairs._replace(prompts=permute(pairs.prompts, permutations), sets=sets)
+    is_pick = ~is_place_decision(sets)  # (S,)
+    relabelled = sets.clone()
+    relabelled[is_pick] = permute(sets[is_pick], permutations[prompt_of[is_pick]])
+    return permute(prompts, permutations), relabelled

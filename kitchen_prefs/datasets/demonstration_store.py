@@ -1,4 +1,4 @@
-"""The demonstrations of the training data set, in memory."""
+"""The demonstrations of a data set in memory, as prompts."""
 
 from typing import Self
 
@@ -91,10 +91,19 @@ class DemonstrationStore:
         others = np.setdiff1d(episodes, excluded)
         return int(generator.choice(others if len(others) else episodes))
 
-    def prompts(self, episodes: list[int]) -> np.ndarray:
-        """The episodes as prompts, padded to the longest of them, (G, P, 14) float32."""
+    def prompts(self, episodes: list[int], length: int | None = None) -> np.ndarray:
+        """Make prompts of episodes, as `kitchen_prefs.envs.demonstrations.prompt_of` does.
+
+        Args:
+            episodes: The episodes' indices, G of them.
+            length: The number P of rows of a prompt; by default that of the longest episode.
+
+        Returns:
+            The episodes' rows, zero-padded, (G, P, 14) float32.
+        """
         rows = [self._episodes[episode] for episode in episodes]
-        prompts = np.zeros((len(rows), max(map(len, rows)), PROMPT_COLUMNS), dtype=np.float32)
+        length = length or max(map(len, rows))
+        prompts = np.zeros((len(rows), length, PROMPT_COLUMNS), dtype=np.float32)
         for prompt, filled in zip(prompts, rows, strict=True):
             prompt[: len(filled)] = filled
         return prompts

@@ -1,0 +1,165 @@
+"""Prompts in training, for any LeRobot policy: `observation.prompt` as the environment gives it.
+
+The environment's observation contains a prompt, a demonstration of the user in another session. A
+data set does not, as each frame would repeat a thousand rows. `PromptStep` adds it: put first into
+a policy's preprocessor, it pairs each sample with another episode of the same preference.
+
+    batch of lerobot-train                       batch that the policy receives
+      observation.instances  (B, 936)              observation.instances  (B, 936)
+      episode_index, index   (B,)      ------>     observation.prompt     (B, 1664, 14)
+                                    PromptStep
+
+The standard track allows this use of the training split's `preference`: it pairs prompts with
+samples, and no network reads it.
+"""
+
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any, Self
+
+import numpy as np
+import torch
+from lerobot.configs import FeatureType, PipelineFeatureType, PolicyFeature, PreTrainedConfig
+from lerobot.datasets import LeRobotDatasetMetadata
+from lerobot.lerobot_types import EnvTransition, TransitionKey
+from lerobot.processor import ProcessorStep, ProcessorStepRegistry
+from lerobot.utils.constants import HF_LEROBOT_HOME
+from torch import Tensor
+
+from kitchen_prefs.datasets.demonstration_store import DemonstrationStore
+from kitchen_prefs.envs.lerobot_env import OBS_PROMPT
+from kitchen_prefs.instances import CHOSEN, POSE, PROMPT_CAPACITY, PROMPT_COLUMNS
+
+Features = dict[PipelineFeatureType, dict[str, PolicyFeature]]
+
+
+@lru_cache(maxsize=2)
+def read_demonstrations(repo_id: str, root: str | None) -> DemonstrationStore:
+    """Read a data set's demonstrations once a process.
+
+    Args:
+        repo_id: The data set's name for LeRobot, such as `kitchen_prefs/dishwasher-train-v1`.
+        root: Its folder; None is LeRobot's default.
+
+    Returns:
+        The demonstrations, all rows of them.
+    """
+    return DemonstrationStore.read(LeRobotDatasetMetadata(repo_id, root), chosen_only=False)
+
+
+def location_of_dataset(config: PreTrainedConfig) -> dict[str, str | None]:
+    """Where the data set lies that a policy is about to be trained on.
+
+    LeRobot's `make_policy` notes the data set in the policy's configuration before it makes the
+    processors (`lerobot.policies.factory`); `lerobot-train` passes it to them in no other way.
+
+    Args:
+        config: The policy's configuration.
+
+    Returns:
+        Its `repo_id`, and its `root` where that is not LeRobot's default; None where the policy is
+        not about to be trained.
+    """
+    meta: LeRobotDatasetMetadata | None = getattr(config, "_runtime_dataset_meta", None)
+    if meta is None:
+        return {"repo_id": None, "root": None}
+    is_default = meta.root == HF_LEROBOT_HOME / meta.repo_id
+    return {"repo_id": meta.repo_id, "root": None if is_default else str(meta.root)}
+
+
+@ProcessorStepRegistry.register("kitchen_prefs_prompt")
+@dataclass
+class PromptStep(ProcessorStep):
+    """Adds `observation.prompt`, (B, 1664, 14) float32, to batches of a data set.
+
+    The prompts depend on the seed and on the frames of the batch alone, so a resumed training
+    repeats an unbroken one. An observation that contains a prompt already, as the environment's
+    does, passes unchanged.
+
+    Attributes:
+        repo_id: The data set that the policy is trained on. Checkpoints store it, for `--resume`.
+        root: Its folder, where that is not LeRobot's default.
+        seed: Another seed pairs the same batches with other prompts.
+    """
+
+    repo_id: str | None = None
+    root: str | None = None
+    seed: int = 0
+
+    @classmethod
+    def from_config(cls, config: PreTrainedConfig, seed: int = 0) -> Self:
+        """Make the step in a policy's `make_TYPE_pre_post_processors`.
+
+        Args:
+            config: The policy's configuration.
+            seed: The seed of the pairs.
+
+        Returns:
+            The step, which draws from the data set that the policy is about to be trained on.
+        """
+        return cls(**location_of_dataset(config), seed=seed)
+
+    def __call__(self, transition: EnvTransition) -> EnvTransition:
+        """Add prompts to a batch of B frames.
+
+        Args:
+            transition: The batch, with `index`, `episode_index` and `action` of a data set, or with
+                a prompt.
+
+        Returns:
+            The batch with prompts.
+
+        Raises:
+            ValueError: If the batch has neither a prompt nor the columns of the step's data set, or
+                if a preference has a single episode.
+        """
+        observation = transition.get(TransitionKey.OBSERVATION) or {}
+        if OBS_PROMPT in observation:
+            return transition
+        frames = transition.get(TransitionKey.COMPLEMENTARY_DATA) or {}
+        if self.repo_id is None or "index" not in frames or "episode_index" not in frames:
+            raise ValueError(
+                f"The batch contains no {OBS_PROMPT!r} and is none of a training data set; roll "
+                "the policy out in an environment of kitchen_prefs, or train it by lerobot-train."
+            )
+        index, episodes = frames["index"].cpu().numpy(), frames["episode_index"].cpu().numpy()
+        self._check(index, episodes, transition[TransitionKey.ACTION])
+        prompts = self._prompts(index, episodes).to(frames["index"].device)
+        return {**transition, TransitionKey.OBSERVATION: {**observation, OBS_PROMPT: prompts}}
+
+    def get_config(self) -> dict[str, Any]:
+        """What a checkpoint stores of the step."""
+        return {"repo_id": self.repo_id, "root": self.root, "seed": self.seed}
+
+    def transform_features(self, features: Features) -> Features:
+        """The features of a batch, with the prompt's."""
+        prompt = PolicyFeature(FeatureType.STATE, (PROMPT_CAPACITY, PROMPT_COLUMNS))
+        observed = features.get(PipelineFeatureType.OBSERVATION, {})
+        return {**features, PipelineFeatureType.OBSERVATION: {**observed, OBS_PROMPT: prompt}}
+
+    def _check(self, index: np.ndarray, episodes: np.ndarray, action: Tensor) -> None:
+        """Check that a batch is of the step's data set: frame i has the i-th chosen row's pose."""
+        store = read_demonstrations(str(self.repo_id), self.root)
+        poses = store.rows[store.rows[:, CHOSEN] > 0][:, POSE]  # (T, 7)
+        known = index.max() < len(poses) and episodes.max() < len(store.preference)
+        actions = action.cpu().numpy().reshape(len(index), -1, poses.shape[1])  # (B, K, 7)
+        if not known or not (actions == poses[index][:, None]).all(-1).any(-1).all():
+            raise ValueError(
+                f"The batch is not of the data set {self.repo_id!r} that the step "
+                "'kitchen_prefs_prompt' draws from: put the step first, before actions are "
+                "normalised; a checkpoint that is trained further on another data set names it as "
+                "the step's repo_id in its policy_preprocessor.json."
+            )
+
+    def _prompts(self, index: np.ndarray, episodes: np.ndarray) -> Tensor:
+        """Draw another episode of the same preference for each frame, (B, 1664, 14)."""
+        store = read_demonstrations(str(self.repo_id), self.root)
+        generator = np.random.default_rng([self.seed, *index])
+        drawn = [store.draw(store.preference[e], np.array([e]), generator) for e in episodes]
+        alone = episodes[episodes == drawn]
+        if len(alone):
+            raise ValueError(
+                f"Episode {alone[0]} of {self.repo_id!r} is the only one of its preference, so "
+                "none can prompt it; train on two demonstrations of each preference or more."
+            )
+        return torch.from_numpy(store.prompts(drawn, PROMPT_CAPACITY))
