@@ -105,7 +105,7 @@ def test_evaluate_untrusted_gives_the_episodes_of_evaluate(few_sessions, tmp_pat
     here, isolated = (read_episodes(tmp_path / name / "val.jsonl") for name in ("here", "isolated"))
     assert here == isolated
     arguments = ("--split=val", f"--out={tmp_path / 'x'}", "--untrusted", "--policy.a=1")
-    with pytest.raises(ValueError, match="^The policy has no setting 'a'"):
+    with pytest.raises(ValueError, match=r"^The policy has no setting 'a'"):
         call("evaluate", *rule, *arguments)
 
 
