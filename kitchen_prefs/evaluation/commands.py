@@ -22,7 +22,7 @@ from kitchen_prefs.evaluation.policy_options import (
 )
 from kitchen_prefs.metrics import FURTHER_METRICS, METRICS, Interval, reference_scores
 from kitchen_prefs.splits import get_split
-from kitchen_prefs.utils.files import make_folder
+from kitchen_prefs.utils.files import at_work_alone, make_folder
 
 if TYPE_CHECKING:
     from kitchen_prefs.evaluation.evaluator import Summary
@@ -99,9 +99,10 @@ def evaluate(
         evaluator = Evaluator(policy, out, salt, prompts, batch_size)
         summaries = []
         for name in names:
-            summary = evaluator.evaluate(
-                name, with_prompt_use=prompt_use, with_category_accuracy=category_accuracy
-            )
+            with at_work_alone(out / name):
+                summary = evaluator.evaluate(
+                    name, with_prompt_use=prompt_use, with_category_accuracy=category_accuracy
+                )
             _print_summary(summary)
             summaries.append(summary)
         if len(summaries) > 1:

@@ -7,6 +7,8 @@ from pathlib import Path
 from shutil import rmtree
 from tempfile import TemporaryFile
 
+from filelock import FileLock, Timeout
+
 
 @contextmanager
 def atomic_file(path: Path) -> Iterator[Path]:
@@ -72,3 +74,24 @@ def make_folder(path: Path, option: str) -> None:
             pass
     except OSError as error:
         raise OSError(f"{path} cannot be written; give another {option}.") from error
+
+
+@contextmanager
+def at_work_alone(path: Path) -> Iterator[None]:
+    """Hold a file or folder, so that two commands do not write it at once.
+
+    The lock lies beside it; it ends with the process.
+
+    Args:
+        path: What is written.
+
+    Raises:
+        ValueError: If another command holds it.
+    """
+    try:
+        with FileLock(path.with_name(f".{path.name}.lock"), timeout=0):
+            yield
+    except Timeout as error:
+        raise ValueError(
+            f"Another command is at work on {path}; wait until it ends, or give another --out."
+        ) from error

@@ -2,6 +2,7 @@
 
 import os
 import re
+import shutil
 import subprocess
 import sys
 from collections.abc import Sequence
@@ -17,10 +18,18 @@ PROGRESS_BAR = re.compile(r"[\w-]+: +\d+%\|.*?\| *\d+/\d+ \[.*?\]")
 ONE_THREAD = {"OMP_NUM_THREADS": "1"}
 
 
+def ending_with_this(command: Sequence[str]) -> list[str]:
+    """A command whose process ends when this one does, even if it is killed (Linux alone)."""
+    if shutil.which("setpriv") is None:
+        return list(command)
+    return ["setpriv", "--pdeathsig", "KILL", *command]
+
+
 def run_module(module: str, arguments: Sequence[str], log: Path, title: str) -> None:
     """Run `python -P -m MODULE ARGUMENTS` in one thread, and show the progress bar that it prints.
 
-    With -P nothing is imported from the current folder, where a stranger's files may lie.
+    With -P nothing is imported from the current folder, where a stranger's files may lie. The
+    process ends with this one.
 
     Args:
         module: Such as "kitchen_prefs.cli".
@@ -32,7 +41,7 @@ def run_module(module: str, arguments: Sequence[str], log: Path, title: str) -> 
         OSError: If the module fails; the message names the log.
     """
     process = subprocess.Popen(
-        [sys.executable, "-P", "-m", module, *arguments],
+        ending_with_this([sys.executable, "-P", "-m", module, *arguments]),
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
         text=True,  # so that a carriage return, which ends a bar's line, ends a line here, too

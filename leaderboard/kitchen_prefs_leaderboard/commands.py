@@ -12,7 +12,7 @@ import typer
 from rich.console import Console
 
 from kitchen_prefs.evaluation.policy_options import ANY_SETTING, PolicyPath, PolicyType
-from kitchen_prefs.utils.files import make_folder
+from kitchen_prefs.utils.files import at_work_alone, make_folder
 from kitchen_prefs_leaderboard.submission_format import UNSPECIFIED
 
 app = typer.Typer(
@@ -92,13 +92,14 @@ def submit(
         hardware=hardware,
         training=training or (submission_writing.training_of(path) if path else UNSPECIFIED),
     )
-    if recordings:
-        from kitchen_prefs_leaderboard.recording_reading import read_recordings
+    with at_work_alone(out):
+        if recordings:
+            from kitchen_prefs_leaderboard.recording_reading import read_recordings
 
-        episodes = read_recordings(recordings)
-    else:
-        episodes = policy.roll_out(out.with_name(f"{out.name}-episodes"), salt=0, jobs=jobs)
-    submission_writing.write_submission(submission, episodes, out)
+            episodes = read_recordings(recordings)
+        else:
+            episodes = policy.roll_out(out.with_name(f"{out.name}-episodes"), salt=0, jobs=jobs)
+        submission_writing.write_submission(submission, episodes, out)
     typer.echo(f"The submission is {out}. `kitchen-prefs leaderboard score {out}` scores it.")
 
 
@@ -180,7 +181,8 @@ def verify(
     rerunner = Rerunner(settings, out / submission.digest[:12], jobs)
     verification.check_policy(submission.description, policy_of(rerunner.described))
     (entry,) = replay_submissions([submission], jobs)
-    found = rerun_submission(entry, rerunner, salt, by)
+    with at_work_alone(rerunner.folder):
+        found = rerun_submission(entry, rerunner, salt, by)
     file = verification.write_verification(found, verifications)
     console.print(score_formats.to_comparison(found))
     typer.echo(f"{score_formats.to_verdict(found)}\nThe record is {file}.")

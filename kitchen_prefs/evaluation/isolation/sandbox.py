@@ -13,6 +13,8 @@ from collections.abc import Sequence
 from functools import lru_cache
 from pathlib import Path
 
+from kitchen_prefs.utils.processes import ending_with_this
+
 NO_SANDBOX = (
     "This platform gives no namespaces (`unshare` and `setpriv` of util-linux on Linux), so the "
     "policy's process can read files and use the network; run policies of strangers elsewhere."
@@ -20,7 +22,6 @@ NO_SANDBOX = (
 # Variables that the process keeps: where programs, libraries and plug-ins are, and nothing else.
 KEPT_VARIABLES = ("PATH", "PYTHONPATH", "LD_LIBRARY_PATH", "VIRTUAL_ENV", "LANG")
 NAMESPACES = (
-    *("setpriv", "--pdeathsig", "KILL"),  # it ends with the evaluation, whatever ends that
     *("unshare", "--user", "--map-root-user", "--net", "--ipc", "--uts", "--mount"),
     *("--pid", "--fork", "--kill-child", "--mount-proc"),
 )
@@ -57,9 +58,9 @@ def confined(command: Sequence[str], scratch: Path, hidden: Sequence[Path]) -> l
         hidden: Folders that it must not see; they exist.
     """
     if not has_sandbox():
-        return list(command)
+        return ending_with_this(command)
     folders = [str(folder.resolve()) for folder in (scratch, *hidden)]
-    return [*NAMESPACES, "sh", "-c", CONFINE, "sh", *folders, "--", *command]
+    return ending_with_this([*NAMESPACES, "sh", "-c", CONFINE, "sh", *folders, "--", *command])
 
 
 def scrubbed_environment(scratch: Path) -> dict[str, str]:

@@ -3,7 +3,7 @@ import json
 import numpy as np
 import pytest
 
-from kitchen_prefs.utils.files import atomic_file, make_folder, write_json
+from kitchen_prefs.utils.files import at_work_alone, atomic_file, make_folder, write_json
 
 
 def test_what_is_there_stays_until_the_new_file_is_whole(tmp_path):
@@ -38,3 +38,14 @@ def test_a_folder_is_made_with_those_above_it(tmp_path):
     (tmp_path / "file").touch()
     with pytest.raises(OSError, match=r"file cannot be written; give another --cards\."):
         make_folder(tmp_path / "file", "--cards")
+
+
+def test_a_second_command_on_one_folder_is_told(tmp_path):
+    out = tmp_path / "out"
+    with at_work_alone(out):
+        with pytest.raises(ValueError, match=f"at work on {out}; wait until"), at_work_alone(out):
+            pass
+        with at_work_alone(tmp_path / "other"):
+            pass
+    with at_work_alone(out):
+        pass

@@ -1,5 +1,12 @@
 """Modules run in processes of their own: their bars, their logs, their failures."""
 
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+
 import pytest
 
 from kitchen_prefs.utils.processes import run_module
@@ -35,3 +42,54 @@ def test_a_module_runs_in_one_thread(tmp_path, monkeypatch):
     monkeypatch.setenv("OMP_NUM_THREADS", "4")
     run_module("threads", [], tmp_path / "log", "threads")
     assert (tmp_path / "log").read_text() == "1\n"
+
+
+def test_nothing_is_imported_from_the_current_folder(tmp_path, monkeypatch):
+    (tmp_path / "here").mkdir()
+    for name in ("lerobot_policy_stranger", "stranger"):
+        (tmp_path / "here" / f"{name}.py").write_text("print('BREACH')")
+    about = tmp_path / "here" / "lerobot_policy_stranger-1.dist-info"
+    about.mkdir()
+    metadata = ("Metadata-Version: 2.1", "Name: lerobot_policy_stranger", "Version: 1", "")
+    (about / "METADATA").write_text("\n".join(metadata))
+    monkeypatch.chdir(tmp_path / "here")
+    log = tmp_path / "log"
+    with pytest.raises(OSError, match="stranger failed"):
+        run_module("stranger", [], log, "stranger")
+    program = "import importlib.metadata as m; print([d.name for d in m.distributions()])"
+    (tmp_path / "listing.py").write_text(program)
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
+    run_module("listing", [], log, "listing")
+    assert "BREACH" not in log.read_text()
+    assert "lerobot_policy_stranger'" not in log.read_text()
+
+
+@pytest.mark.skipif(shutil.which("setpriv") is None, reason="needs util-linux")
+def test_a_module_ends_with_the_process_that_runs_it(tmp_path):
+    (tmp_path / "sleeper.py").write_text(
+        "import os, pathlib, time\n"
+        f"pathlib.Path({str(tmp_path / 'pid')!r}).write_text(str(os.getpid()))\n"
+        "time.sleep(3600)\n"
+    )
+    program = (
+        "from pathlib import Path\n"
+        "from kitchen_prefs.utils.processes import run_module\n"
+        f"run_module('sleeper', [], Path({str(tmp_path / 'log')!r}), 'Sleeping')\n"
+    )
+    with subprocess.Popen(
+        [sys.executable, "-c", program],
+        env=os.environ | {"PYTHONPATH": str(tmp_path)},
+        stderr=subprocess.DEVNULL,
+    ) as parent:
+        until(lambda: (tmp_path / "pid").exists() and (tmp_path / "pid").read_text())
+        parent.send_signal(signal.SIGKILL)
+    sleeper = int((tmp_path / "pid").read_text())
+    until(lambda: not os.path.exists(f"/proc/{sleeper}"))
+
+
+def until(something):
+    for _ in range(300):
+        if something():
+            return
+        time.sleep(0.1)
+    raise AssertionError("it does not happen")

@@ -1,0 +1,71 @@
+"""Re-runs of policies that are nobody's friends, through the command."""
+
+from pathlib import Path
+
+import pytest
+
+from kitchen_prefs.simulation.sessions import FRESH_USERS, make_session
+from kitchen_prefs.splits import HELD_OUT_USERS, SEEN_USERS, SPLITS
+from kitchen_prefs_leaderboard.reruns import Rerunner, Run, fresh_run
+from kitchen_prefs_leaderboard.submission_writing import describe, policy_of, write_submission
+from kitchen_prefs_leaderboard.verification import Verification, read_verifications
+
+ATTACKERS = Path(__file__).parents[1] / "attackers"
+
+
+@pytest.mark.lerobot
+@pytest.mark.slow
+@pytest.mark.usefixtures("few_sessions")
+def test_a_policy_that_reads_its_neighbours_in_the_batch_is_not_confirmed(
+    kitchen_prefs, monkeypatch, tmp_path, capsys
+):
+    monkeypatch.setenv("PYTHONPATH", str(ATTACKERS))
+    options = ["--attack=neighbours"]
+    settings = {"policy_type": "attackers", "options": options, "track": "standard"}
+    rerunner = Rerunner(settings, tmp_path / "own", jobs=1)
+    submission = describe(
+        name="Neighbours",
+        authors=["A. Attacker"],
+        track="standard",
+        policy=policy_of(rerunner.described),
+        hardware="none",
+        training="none",
+    )
+    episodes = rerunner.roll_out([Run("published-1", 0)])["published-1"]
+    write_submission(submission, episodes, tmp_path / "submission")
+    policy = ("--policy.type=attackers", "--policy.attack=neighbours")
+    folders = (f"--verifications={tmp_path / 'records'}", f"--out={tmp_path / 'out'}")
+    rerun = ("leaderboard", "verify", tmp_path / "submission", "--rerun", "--jobs=1")
+    assert kitchen_prefs(*rerun, *policy, *folders, "--by=A. Maintainer") == 1
+    assert "its episodes depend on each other" in capsys.readouterr().out
+    (record,) = (tmp_path / "records").glob("*.json")
+    found = Verification.model_validate_json(record.read_text())
+    assert (found.repeats, found.independent, found.by) == (True, False, "A. Maintainer")
+    assert read_verifications(tmp_path / "records") == {}
+
+
+def test_fresh_sessions_are_of_fresh_users(tmp_path):
+    run = fresh_run(tmp_path, "standard", None)
+    assert run.salt >= FRESH_USERS
+    published = {make_session("unseen_preferences", i).preference for i in range(100)}
+    for split in ("unseen_preferences", "unseen_both", "noisy", "prompts"):
+        for i in range(0, SPLITS[split].sessions, 7):
+            session, known = make_session(split, i, run.salt), make_session(split, i)
+            if session.user in HELD_OUT_USERS:
+                assert session.preference not in published
+            if session.user in SEEN_USERS:
+                assert session.preference == known.preference
+
+
+def test_fresh_sessions_of_a_track_with_labels_keep_the_twelve(tmp_path):
+    run = fresh_run(tmp_path, "privileged", None)
+    assert 0 < run.salt < FRESH_USERS
+    session = make_session("unseen_preferences", 3, run.salt)
+    assert session.preference == make_session("unseen_preferences", 3).preference
+
+
+def test_a_rerun_that_was_begun_goes_on_with_its_seed(tmp_path):
+    run = fresh_run(tmp_path, "standard", None)
+    (tmp_path / run.name).mkdir()
+    assert fresh_run(tmp_path, "standard", None) == run
+    assert fresh_run(tmp_path, "standard", 5).salt == 5
