@@ -9,6 +9,8 @@ hand (paper, section 2). One instance is one row of 13 numbers:
 
 A set has as many rows as there are instances. LeRobot stores constant shapes only, so sets are
 padded with rows of zeros to `CAPACITY`; a real row is an object or a place, so it is never zero.
+LeRobot's tools take flat columns alone, so data sets, and LeRobot's environments, have a set as its
+rows one after the other, (936,); `as_rows` gives the rows.
 
 A prompt is a whole demonstration: the sets of all its decisions, one below the other, with a
 fourteenth column that marks the row which each decision chose.
@@ -29,6 +31,7 @@ COLUMNS = 13
 
 # The largest place set: door, two racks, twenty dishes, 48 placements of a category and the sink.
 CAPACITY = 3 + 20 + 48 + 1
+FLAT_SIZE = CAPACITY * COLUMNS
 
 CHOSEN = 13  # the prompt's last column
 PROMPT_COLUMNS = 14
@@ -61,15 +64,23 @@ def unpad(instances: np.ndarray) -> np.ndarray:
     """Give back the set that `pack` padded.
 
     Args:
-        instances: A padded set, (N, D).
+        instances: A padded set, (N, D), or flat, (N 13,).
 
     Returns:
         The rows that are objects or places, (n, D).
     """
-    return instances[is_real(instances)]
+    rows = instances.reshape(-1, COLUMNS) if instances.ndim == 1 else instances
+    return rows[is_real(rows)]
 
 
 # The following take NumPy arrays and torch tensors alike, with any number of leading dimensions.
+
+
+def as_rows(sets: Any) -> Any:
+    """Sets as rows, (..., N, 13), from such sets or from flat ones, (..., N 13)."""
+    if sets.shape[-1] == COLUMNS:
+        return sets
+    return sets.reshape(*sets.shape[:-1], -1, COLUMNS)
 
 
 def is_real(rows: Any) -> Any:

@@ -102,15 +102,13 @@ def _set_bytes(file: Path | io.BytesIO) -> int:
 def _without_padding(columns: dict[str, np.ndarray]) -> io.BytesIO:
     """The instance sets as `writing` stores them, but with their own rows only."""
     file = io.BytesIO()
-    schema = pa.schema({"observation.instances": pa.list_(pa.list_(pa.float32()))})
+    schema = pa.schema({"observation.instances": pa.list_(pa.float32())})
     starts = np.flatnonzero(columns["frame_index"] == 0)[1:]
     with pq.ParquetWriter(file, schema, compression="snappy") as writer:
         for padded in np.split(columns["observation.instances"], starts):  # (T, N, 13) an episode
             sets = [instances.unpad(one) for one in padded]
-            ends = np.cumsum([0, *map(len, sets)], dtype=np.int32)
-            rows = np.arange(ends[-1] + 1, dtype=np.int32) * instances.COLUMNS
-            flat = pa.array(np.concatenate(sets).ravel())
-            column = pa.ListArray.from_arrays(ends, pa.ListArray.from_arrays(rows, flat))
+            ends = np.cumsum([0, *(one.size for one in sets)], dtype=np.int32)
+            column = pa.ListArray.from_arrays(ends, pa.array(np.concatenate(sets).ravel()))
             writer.write_table(pa.Table.from_arrays([column], schema=schema))
     file.seek(0)
     return file

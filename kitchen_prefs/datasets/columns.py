@@ -1,10 +1,12 @@
 """The columns of a data set: one row a frame, one frame a decision.
 
-    frame 0  observation.instances (72, 13)  action (7)  chosen_index  ...   episode_index 0
-    frame 1  observation.instances (72, 13)  action (7)  chosen_index  ...   episode_index 0
+    frame 0  observation.instances (936)  action (7)  chosen_index  ...   episode_index 0
+    frame 1  observation.instances (936)  action (7)  chosen_index  ...   episode_index 0
     ...
 
-`kitchen_prefs.instances` draws one instance set. LeRobot adds timestamp, frame_index,
+`kitchen_prefs.instances` draws one instance set, whose rows stand one after the other here: all of
+LeRobot's tools take a flat column, and none all of a two-dimensional one. It has no statistics: no
+policy normalises a set, whose padding they would count. LeRobot adds timestamp, frame_index,
 episode_index, index and task_index.
 """
 
@@ -19,11 +21,12 @@ import pyarrow.parquet as pq
 
 from kitchen_prefs.envs.demonstrations import Demonstration
 from kitchen_prefs.envs.observations import ENVIRONMENT_STATE, STATE
-from kitchen_prefs.instances import CAPACITY, COLUMNS
+from kitchen_prefs.instances import CAPACITY, COLUMNS, FLAT_SIZE
 
 POSE_NAMES = ("x", "y", "z", "qw", "qx", "qy", "qz")
 FPS = 1  # a decision has no duration; with 1 a timestamp is the decision's number
 ROBOT_TYPE = "kitchen_prefs"
+SETS = "observation.instances"
 
 
 def _feature(dtype: str, shape: tuple[int, ...], names: Iterable[str] | None) -> dict[str, Any]:
@@ -31,7 +34,7 @@ def _feature(dtype: str, shape: tuple[int, ...], names: Iterable[str] | None) ->
 
 
 FEATURES = {
-    "observation.instances": _feature("float32", (CAPACITY, COLUMNS), ("instance", "column")),
+    SETS: _feature("float32", (FLAT_SIZE,), None),
     "observation.environment_state": _feature(
         "float32", (len(ENVIRONMENT_STATE),), ENVIRONMENT_STATE
     ),
@@ -54,7 +57,7 @@ def columns_of(demonstration: Demonstration) -> dict[str, np.ndarray]:
     """
     frames = len(demonstration.action)
     return {
-        "observation.instances": demonstration.instances,
+        SETS: demonstration.instances.reshape(frames, FLAT_SIZE),
         "observation.environment_state": demonstration.environment_state,
         "observation.state": demonstration.state,
         "action": demonstration.action,
@@ -66,6 +69,11 @@ def columns_of(demonstration: Demonstration) -> dict[str, np.ndarray]:
     }
 
 
+def with_statistics(columns: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """The columns of which a data set has statistics: all but the sets."""
+    return {name: values for name, values in columns.items() if name != SETS}
+
+
 def read_columns(root: Path) -> dict[str, np.ndarray]:
     """Read all columns of a data set, in frame order.
 
@@ -73,7 +81,7 @@ def read_columns(root: Path) -> dict[str, np.ndarray]:
         root: The data set's folder.
 
     Returns:
-        For each of FEATURES and BOOKKEEPING, (frames, ...).
+        For each of FEATURES and BOOKKEEPING, (frames, ...); the sets are (frames, 72, 13).
     """
     table = pa.concat_tables(
         [pq.read_table(path) for path in sorted(root.glob("data/*/*.parquet"))]
@@ -81,6 +89,7 @@ def read_columns(root: Path) -> dict[str, np.ndarray]:
     columns = {}
     for name in (*FEATURES, *BOOKKEEPING):
         shape = FEATURES[name]["shape"] if name in FEATURES else (1,)
+        shape = (CAPACITY, COLUMNS) if name == SETS else shape
         values = _flat(table[name].combine_chunks()).to_numpy(zero_copy_only=False)
         columns[name] = values.reshape(-1, *(() if shape == (1,) else shape))
     return columns

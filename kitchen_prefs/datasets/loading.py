@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from filelock import FileLock
 
-from kitchen_prefs.datasets.manifest import published_fingerprint, read_manifest
+from kitchen_prefs.datasets.manifest import is_outdated, published_fingerprint, read_manifest
 from kitchen_prefs.datasets.names import Content, content_of, dataset_root
 from kitchen_prefs.utils.files import atomic_folder
 
@@ -37,7 +37,7 @@ def load_dataset(name: str) -> "LeRobotDataset":
 
 
 def make_dataset(name: str, workers: int | None = None) -> Path:
-    """Make a data set if it is not there.
+    """Make a data set if it is not there, or again if it is of an earlier format.
 
     Processes that ask for the same one at once wait for the first.
 
@@ -56,10 +56,10 @@ def make_dataset(name: str, workers: int | None = None) -> Path:
     content = content_of(name)
     root = dataset_root(content.name)
     try:
-        if not root.exists():
+        if _is_missing(content, root):
             root.parent.mkdir(parents=True, exist_ok=True)
             with FileLock(root.with_name(f".{root.name}.lock")):
-                if not root.exists():
+                if _is_missing(content, root):
                     _make(content, root, workers)
     except (OSError, BrokenExecutor) as error:
         raise OSError(
@@ -74,6 +74,19 @@ def make_dataset(name: str, workers: int | None = None) -> Path:
             stacklevel=2,
         )
     return root
+
+
+def _is_missing(content: Content, root: Path) -> bool:
+    if not root.exists():
+        return True
+    if is_outdated(root):
+        warnings.warn(
+            f"The data set {content.name} in {root} is of an earlier format, so it is made again; "
+            "its values stay the same.",
+            stacklevel=3,
+        )
+        return True
+    return False
 
 
 def _make(content: Content, root: Path, workers: int | None) -> None:

@@ -1,7 +1,7 @@
 """The manifest of a data set, and the fingerprints of the published ones.
 
-`meta/kitchen_prefs.json` lies in each data set: its name, data version, content fingerprint, and
-the SHA-256 of each file, so that a half-written or damaged one is found when it is opened.
+`meta/kitchen_prefs.json` lies in each data set: its name, data version, format, fingerprint,
+and the SHA-256 of each file, so that a half-written or damaged one is found when it is opened.
 `kitchen_prefs/datasets/fingerprints.json` holds the fingerprints of the published data sets.
 """
 
@@ -15,7 +15,16 @@ from kitchen_prefs.utils.files import write_json
 
 MANIFEST = Path("meta") / "kitchen_prefs.json"
 FINGERPRINTS = Path(__file__).with_name("fingerprints.json")
-KINDS = {"data_version": int, "fingerprint": str, "episodes": int, "frames": int, "files": dict}
+# How the values lie in the files. 1: a set is a list of 72 lists; 2: a flat list of 936 numbers.
+FORMAT = 2
+KINDS = {
+    "data_version": int,
+    "format": int,
+    "fingerprint": str,
+    "episodes": int,
+    "frames": int,
+    "files": dict,
+}
 
 
 def write_manifest(name: str, root: Path) -> dict:
@@ -24,6 +33,7 @@ def write_manifest(name: str, root: Path) -> dict:
     manifest = {
         "name": name,
         "data_version": DATA_VERSION,
+        "format": FORMAT,
         "fingerprint": fingerprint(columns, read_tasks(root)),
         "episodes": int(columns["episode_index"][-1]) + 1,
         "frames": len(columns["episode_index"]),
@@ -44,7 +54,7 @@ def read_manifest(name: str, root: Path) -> dict:
         The manifest.
 
     Raises:
-        ValueError: If the data set is incomplete, damaged, or of another version.
+        ValueError: If the data set is incomplete, damaged, or of another version or format.
     """
     way_out = _way_out(root)
     damaged = f"The data set {name} is damaged ({{}} is not as written); {way_out}"
@@ -57,6 +67,11 @@ def read_manifest(name: str, root: Path) -> dict:
         raise ValueError(
             f"The data set {name} is of data version {manifest['data_version']}, but this "
             f"kitchen_prefs works with version {DATA_VERSION}; {way_out}"
+        )
+    if manifest["format"] != FORMAT:
+        raise ValueError(
+            f"The data set {name} is of format {manifest['format']}, but this kitchen_prefs reads "
+            f"format {FORMAT}; `kitchen-prefs datasets make {name}` makes it again."
         )
     wrong = _wrong_files(manifest["files"], root)
     if wrong:
@@ -75,6 +90,15 @@ def _way_out(root: Path) -> str:
     return f"delete the folder {root} and ask for the data set again."
 
 
+def is_outdated(root: Path) -> bool:
+    """Whether a data set is whole and of this data version, but of an earlier format."""
+    file = root / MANIFEST
+    manifest = _parse(file.read_bytes()) if file.is_file() else None
+    if manifest is None or manifest["data_version"] != DATA_VERSION:
+        return False
+    return manifest["format"] < FORMAT and not _wrong_files(manifest["files"], root)
+
+
 def published_fingerprint(name: str) -> str | None:
     """The fingerprint of a published data set; None for a subset."""
     return json.loads(FINGERPRINTS.read_text())["fingerprints"].get(name)
@@ -89,7 +113,7 @@ def _files(root: Path) -> list[Path]:
 def _parse(content: bytes) -> dict | None:
     """The manifest, or None if it is not one."""
     try:
-        manifest = json.loads(content)
+        manifest = {"format": 1} | json.loads(content)  # the first format did not name itself
         known = all(isinstance(manifest[key], kind) for key, kind in KINDS.items())
     except (ValueError, KeyError, TypeError):
         return None

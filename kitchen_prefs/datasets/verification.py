@@ -14,7 +14,14 @@ from lerobot.utils.constants import DEFAULT_FEATURES
 from tqdm import tqdm
 
 from kitchen_prefs import instances
-from kitchen_prefs.datasets.columns import FEATURES, FPS, fingerprint, read_columns, read_tasks
+from kitchen_prefs.datasets.columns import (
+    FEATURES,
+    FPS,
+    fingerprint,
+    read_columns,
+    read_tasks,
+    with_statistics,
+)
 from kitchen_prefs.datasets.manifest import published_fingerprint, read_manifest
 from kitchen_prefs.datasets.names import Content, content_of, dataset_root
 from kitchen_prefs.envs.environment import DishwasherLoading
@@ -158,7 +165,7 @@ def _check_statistics(data: Data) -> None:
     of_episodes = []
     for episode in tqdm(range(len(data.lengths)), "statistics", unit="episode", leave=False):
         frames = data.frames(episode)
-        columns = {name: values[frames] for name, values in data.columns.items()}
+        columns = {name: values[frames] for name, values in with_statistics(data.columns).items()}
         of_episodes.append(compute_episode_stats(columns, features))
     for name, computed in aggregate_stats(of_episodes).items():
         for kind, found in computed.items():

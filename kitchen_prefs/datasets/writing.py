@@ -30,7 +30,13 @@ from lerobot.utils.utils import flatten_dict
 from tqdm import tqdm
 
 from kitchen_prefs.datasets.cards import card, card_facts
-from kitchen_prefs.datasets.columns import FEATURES, FPS, ROBOT_TYPE, columns_of
+from kitchen_prefs.datasets.columns import (
+    FEATURES,
+    FPS,
+    ROBOT_TYPE,
+    columns_of,
+    with_statistics,
+)
 from kitchen_prefs.datasets.manifest import write_manifest
 from kitchen_prefs.datasets.names import Content
 from kitchen_prefs.envs.demonstrations import demonstrate
@@ -71,7 +77,7 @@ def write_dataset(content: Content, root: Path, workers: int | None = None) -> N
     """
     data = root / DEFAULT_DATA_PATH.format(**FIRST_FILE)
     data.parent.mkdir(parents=True)
-    schema = _parquet_schema()
+    schema = get_hf_features_from_features(ALL_FEATURES).arrow_schema
     tasks: dict[str, int] = {}
     stats: list[Stats] = []
     rows: list[dict] = []
@@ -122,7 +128,8 @@ def _leave_with_parent() -> None:
 def _demonstrate(session: tuple[str, int]) -> EpisodeFrames:
     demonstration = demonstrate(make_session(*session))
     columns = columns_of(demonstration)
-    return EpisodeFrames(columns, demonstration.task, compute_episode_stats(columns, ALL_FEATURES))
+    stats = compute_episode_stats(with_statistics(columns), ALL_FEATURES)
+    return EpisodeFrames(columns, demonstration.task, stats)
 
 
 def _bookkeeping(number: int, start: int, frames: int, task_index: int) -> dict[str, np.ndarray]:
@@ -152,32 +159,13 @@ def _episode_row(bookkeeping: dict[str, np.ndarray], task: str, stats: Stats) ->
     }
 
 
-def _parquet_schema() -> pa.Schema:
-    """The columns' types, with a set as lists of lists.
-
-    LeRobot itself writes a set as an extension type, which its own `lerobot-edit-dataset` then
-    cannot merge; lists of lists it can.
-    """
-    schema = get_hf_features_from_features(ALL_FEATURES).arrow_schema
-    for i, field in enumerate(schema):
-        if isinstance(field.type, pa.ExtensionType):
-            schema = schema.set(i, field.with_type(field.type.storage_type))
-    return schema
-
-
 def _table(columns: dict[str, np.ndarray], schema: pa.Schema) -> pa.Table:
     return pa.Table.from_arrays([_array(columns[f.name], f.type) for f in schema], schema=schema)
 
 
 def _array(values: np.ndarray, kind: pa.DataType) -> pa.Array:
     flat = pa.array(values.ravel())
-    if values.ndim == 1:
-        return flat
-    if values.ndim == 2:
-        return pa.FixedSizeListArray.from_arrays(flat, type=kind)
-    frames, rows, width = values.shape
-    sets = pa.ListArray.from_arrays(np.arange(frames * rows + 1, dtype=np.int32) * width, flat)
-    return pa.ListArray.from_arrays(np.arange(frames + 1, dtype=np.int32) * rows, sets)
+    return flat if values.ndim == 1 else pa.FixedSizeListArray.from_arrays(flat, type=kind)
 
 
 def _write_meta(root: Path, tasks: dict[str, int], stats: list[Stats], rows: list[dict]) -> None:

@@ -64,6 +64,7 @@ class DishwasherLoading(gymnasium.Env):
         prompts: The number n of demonstrations in a prompt.
         task_id: The label of the preference whose sessions alone are simulated, as `Split.tasks`
             has them; None for all sessions of the split.
+        flat: Whether `instances` is flat, (936,), as LeRobot's data sets have it.
         render_mode: None or "rgb_array".
 
     Raises:
@@ -81,6 +82,7 @@ class DishwasherLoading(gymnasium.Env):
         prompt_of: str = "same",
         prompts: int = 1,
         task_id: int | None = None,
+        flat: bool = False,
         render_mode: str | None = None,
     ) -> None:
         if track not in TRACKS:
@@ -92,7 +94,8 @@ class DishwasherLoading(gymnasium.Env):
         self.prompts = prompts
         self.render_mode = render_mode
         self.action_space = action_space()
-        self.observation_space = observation_space(track, prompts)
+        self.observation_space = observation_space(track, prompts, flat)
+        self._set_shape = self.observation_space["instances"].shape
         self._simulator: EpisodeSimulator | None = None
         self._renderer: Any = None
 
@@ -198,7 +201,7 @@ class DishwasherLoading(gymnasium.Env):
         observation = self.simulator.observation
         environment_state, state = self.simulator.observer.flat(observation)
         observed = {
-            "instances": instances.pack(observation.rows),
+            "instances": instances.pack(observation.rows).reshape(self._set_shape),
             "environment_state": environment_state,
             "agent_pos": state,
             "prompt": self._prompt.copy(),

@@ -34,7 +34,7 @@ FEATURE_TYPES = {"environment_state": FeatureType.ENV}
 
 def features_of(track: str) -> dict[str, PolicyFeature]:
     """The environment's raw keys on a track, as LeRobot's features."""
-    shown = observation_space(track, prompts=1).spaces
+    shown = observation_space(track, prompts=1, flat=True).spaces
     return {
         ACTION: PolicyFeature(FeatureType.ACTION, action_space().shape),
         **{
@@ -74,7 +74,9 @@ class KitchenPrefsEnv(EnvConfig):
     @property
     def gym_kwargs(self) -> dict[str, Any]:
         """The environment's arguments."""
-        return {"split": self.task, "track": self.track, "render_mode": "rgb_array"}
+        # Flat already in the observation, not by a processor: LeRobot records observations as the
+        # environment gives them, and checks their shapes against the features.
+        return {"split": self.task, "track": self.track, "flat": True, "render_mode": "rgb_array"}
 
     def create_envs(
         self, n_envs: int, use_async_envs: bool = False

@@ -10,10 +10,14 @@ from kitchen_prefs.envs.observations import ENVIRONMENT_STATE_SIZE, STATE_SIZE
 from kitchen_prefs.simulation import layout
 
 
-def observation_space(track: str, prompts: int) -> Dict:
-    """What the environment shows on a track, with a number of demonstrations in the prompt."""
+def observation_space(track: str, prompts: int, flat: bool = False) -> Dict:
+    """What the environment shows on a track, with a number of demonstrations in the prompt.
+
+    With `flat`, the rows of the set stand one after the other, (936,), as in the data sets.
+    """
+    sets = (instances.FLAT_SIZE,) if flat else (instances.CAPACITY, instances.COLUMNS)
     spaces: dict[str, Space[Any]] = {
-        "instances": _unbounded(instances.CAPACITY, instances.COLUMNS),
+        "instances": _unbounded(*sets),
         "environment_state": _unbounded(ENVIRONMENT_STATE_SIZE),
         "agent_pos": _unbounded(STATE_SIZE),
         "prompt": _unbounded(prompts * instances.PROMPT_CAPACITY, instances.PROMPT_COLUMNS),

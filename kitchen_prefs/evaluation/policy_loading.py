@@ -4,6 +4,7 @@ import hashlib
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from math import prod
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +19,7 @@ from lerobot.processor import PolicyProcessorPipeline
 from lerobot.utils.constants import ACTION
 from lerobot.utils.import_utils import register_third_party_plugins
 
-from kitchen_prefs.envs.lerobot_env import KitchenPrefsEnv
+from kitchen_prefs.envs.lerobot_env import OBS_INSTANCES, KitchenPrefsEnv
 from kitchen_prefs.evaluation.checkpoint_reading import (
     find_checkpoint,
     read_config,
@@ -78,6 +79,7 @@ class LoadedPolicy:
         names = observations[0].keys()
         stacked = {name: np.stack([one[name] for one in observations]) for name in names}
         batch: dict[str, Any] = preprocess_observation(stacked)
+        batch[OBS_INSTANCES] = batch[OBS_INSTANCES].flatten(1)  # (B, 936), as LeRobot shows them
         batch["task"] = tasks
         with torch.inference_mode():
             action = self.policy.select_action(self.preprocessor(batch))  # (B, 7)
@@ -191,7 +193,8 @@ def _check_features(config: PreTrainedConfig, environment: KitchenPrefsEnv) -> N
                 f"The policy was trained on {name!r}, which the environment does not show on the "
                 f"{environment.track} track."
             )
-        if tuple(feature.shape) != tuple(observed[name].shape):
+        # Sets have the shape (72, 13) in checkpoints of the data's first format.
+        if prod(feature.shape) != prod(observed[name].shape):
             raise ValueError(
                 f"The policy was trained on {name!r} of shape {tuple(feature.shape)}; the "
                 f"environment's has {tuple(observed[name].shape)}. Train it on this data version."

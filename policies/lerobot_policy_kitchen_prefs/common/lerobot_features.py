@@ -7,7 +7,7 @@ from lerobot.utils.constants import ACTION
 from torch import Tensor
 
 from kitchen_prefs.envs.lerobot_env import OBS_INSTANCES, OBS_PREFERENCE
-from kitchen_prefs.instances import COLUMNS
+from kitchen_prefs.instances import COLUMNS, as_rows
 
 POSE_SIZE = 7  # position and quaternion
 
@@ -18,8 +18,13 @@ def check_sets_and_poses(config: PreTrainedConfig) -> None:
     Raises:
         ValueError: If a feature is missing or has another shape.
     """
-    _check(config, OBS_INSTANCES, config.input_features, lambda shape: shape[1:] == (COLUMNS,))
+    _check(config, OBS_INSTANCES, config.input_features, _is_set)
     _check(config, ACTION, config.output_features, lambda shape: shape == (POSE_SIZE,))
+
+
+def _is_set(shape: tuple[int, ...]) -> bool:
+    """Whether a shape is (N, 13), or (N 13,) as data sets have it."""
+    return shape[1:] == (COLUMNS,) or (len(shape) == 1 and shape[0] % COLUMNS == 0)
 
 
 def _check(
@@ -35,6 +40,11 @@ def _check(
             f"{config.type!r} takes sets of rows of {COLUMNS} numbers and returns a pose of "
             f"{POSE_SIZE}, but {name!r} {found}; use a data set or an environment of kitchen_prefs."
         )
+
+
+def observed_sets(batch: dict[str, Tensor]) -> Tensor:
+    """The observed sets of B environments, (B, N, 13), see `observed`."""
+    return as_rows(observed(batch, OBS_INSTANCES))
 
 
 def observed(batch: dict[str, Tensor], key: str) -> Tensor:

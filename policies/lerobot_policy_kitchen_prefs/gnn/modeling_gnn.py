@@ -15,7 +15,7 @@ from lerobot.utils.constants import ACTION
 from torch import Tensor, nn
 
 from kitchen_prefs.datasets.demonstration_store import DemonstrationStore
-from kitchen_prefs.envs.lerobot_env import OBS_INSTANCES, OBS_PREFERENCE
+from kitchen_prefs.envs.lerobot_env import OBS_PREFERENCE
 from kitchen_prefs.instances import POSE, is_place_decision
 from kitchen_prefs.preferences import TWELVE
 
@@ -23,7 +23,7 @@ from ..common.categories import Categories
 from ..common.denoising import Denoiser
 from ..common.failed_choices import FailedChoices, synthesise_failures
 from ..common.instance_sets import accuracies, chosen_rows
-from ..common.lerobot_features import observed
+from ..common.lerobot_features import observed, observed_sets
 from ..common.weight_loading import misfit_in_a_sentence
 from .configuration_gnn import GNNConfig
 from .network import GNNetwork, RowScores
@@ -107,7 +107,7 @@ class GNNPolicy(PreTrainedPolicy):
                 "The graph network takes the preferences' labels from the training data set; make "
                 "it with dataset_meta=dataset.meta, as lerobot-train does."
             )
-        sets = batch[OBS_INSTANCES]  # (B, N, 13)
+        sets = observed_sets(batch)  # (B, N, 13)
         targets = chosen_rows(sets, batch[ACTION])  # (B,)
         labels = self.labels.to(sets.device)[batch["episode_index"]]  # (B,)
         failed = torch.zeros(sets.shape[:2], dtype=torch.bool, device=sets.device)
@@ -140,7 +140,7 @@ class GNNPolicy(PreTrainedPolicy):
             ValueError: If the sets or the labels are missing.
         """
         self.eval()
-        raw_sets, sets = observed(batch, OBS_INSTANCES), self._denoised(batch)  # (B, N, 13) each
+        raw_sets, sets = observed_sets(batch), self._denoised(batch)  # (B, N, 13) each
         scores = self.score_rows(batch, self._failed_choices.find(sets)).scores  # (B, N)
         choices = sample(scores) if self.config.sample else scores.argmax(dim=1)  # (B,)
         environments = torch.arange(len(sets), device=sets.device)
@@ -176,7 +176,7 @@ class GNNPolicy(PreTrainedPolicy):
 
     def _denoised(self, batch: dict[str, Tensor]) -> Tensor:
         """The observed sets, denoised where configured, (B, N, 13)."""
-        sets = observed(batch, OBS_INSTANCES)
+        sets = observed_sets(batch)
         return self.recognition(sets) if self.recognition else sets
 
 

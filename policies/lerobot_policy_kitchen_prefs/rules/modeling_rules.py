@@ -51,7 +51,7 @@ class RulesPolicy(PreTrainedPolicy):
         """Choose an action in every environment of the batch.
 
         Args:
-            batch: The observation; `observation.instances` is (B, N, 13).
+            batch: The observation; `observation.instances` is (B, N, 13) or flat.
             **_: Further arguments of LeRobot.
 
         Returns:

@@ -10,7 +10,7 @@ import torch
 from torch import Tensor
 
 from kitchen_prefs.envs.lerobot_env import OBS_INSTANCES
-from kitchen_prefs.instances import IS_OBJECT
+from kitchen_prefs.instances import IS_OBJECT, as_rows
 
 from ..common.instance_sets import select_rows
 
@@ -44,12 +44,12 @@ def split_history(batch: dict[str, Tensor]) -> tuple[Tensor, Tensor]:
     """Split a batch of LeRobot's into present sets and earlier objects.
 
     Args:
-        batch: B samples of sets, (B, N, 13), or of k + 1 sets each, (B, k + 1, N, 13).
+        batch: B samples of sets, (B, N, 13), or of k + 1 sets each, (B, k + 1, N, 13); or flat.
 
     Returns:
         The present sets, (B, N, 13), and the objects of earlier decisions, (B, K, 13).
     """
-    sets = batch[OBS_INSTANCES]
+    sets = as_rows(batch[OBS_INSTANCES])
     if sets.ndim == 3:
         return sets, sets[:, :0]
     # LeRobot repeats the first frame of an episode where there is none before it.

@@ -12,14 +12,14 @@ from lerobot.utils.constants import ACTION
 from torch import Tensor, nn
 
 from kitchen_prefs.datasets.demonstration_store import DemonstrationStore
-from kitchen_prefs.envs.lerobot_env import OBS_INSTANCES, OBS_PROMPT
+from kitchen_prefs.envs.lerobot_env import OBS_PROMPT
 from kitchen_prefs.instances import POSE, choosable, is_place_decision
 
 from ..common.categories import Categories
 from ..common.denoising import Denoiser
 from ..common.failed_choices import FailedChoices, synthesise_failures
 from ..common.instance_sets import accuracies, chosen_rows, length_buckets
-from ..common.lerobot_features import observed
+from ..common.lerobot_features import observed, observed_sets
 from ..common.rack_poses import RackPoses
 from ..common.relabelling import relabel
 from ..common.weight_loading import misfit_in_a_sentence
@@ -176,7 +176,7 @@ class TTPPolicy(PreTrainedPolicy):
             ValueError: If the sets or, on the first call, the prompts are missing.
         """
         self.eval()
-        raw_sets = observed(batch, OBS_INSTANCES)  # (B, N, 13)
+        raw_sets = observed_sets(batch)  # (B, N, 13)
         sets = self.recognition(raw_sets) if self.recognition else raw_sets
         if self._preference is None:
             self._preference = self._encode(split_prompts(observed(batch, OBS_PROMPT)))

@@ -37,8 +37,8 @@ def test_a_loaded_data_set_holds_demonstrations(small, home, monkeypatch):
     loader = torch.utils.data.DataLoader(dataset, batch_size=16)
     batch = next(iter(loader))
     sets = batch["observation.instances"]
-    assert sets.shape == (16, instances.CAPACITY, instances.COLUMNS)
-    rows = sets[torch.arange(16), batch["chosen_index"]]
+    assert sets.shape == (16, instances.FLAT_SIZE)
+    rows = instances.as_rows(sets)[torch.arange(16), batch["chosen_index"]]
     torch.testing.assert_close(rows[:, instances.POSE], batch["action"], rtol=0, atol=0)
     assert batch["preference"].tolist() == [0] * 16
     assert batch["task"][0].startswith("Load the top rack with cups")
@@ -71,7 +71,7 @@ def test_plain_lerobot_reads_it_without_this_package(small, tmp_path):
         text=True,
     )
     assert done.returncode == 0, done.stderr
-    assert done.stdout == "4 torch.Size([72, 13])\n"
+    assert done.stdout == "4 torch.Size([936])\n"
 
 
 @pytest.mark.lerobot

@@ -8,7 +8,14 @@ import pandas as pd
 import pytest
 
 from kitchen_prefs.datasets import make_dataset
-from kitchen_prefs.datasets.columns import FEATURES, FPS, ROBOT_TYPE, columns_of, read_columns
+from kitchen_prefs.datasets.columns import (
+    FEATURES,
+    FPS,
+    ROBOT_TYPE,
+    SETS,
+    columns_of,
+    read_columns,
+)
 from kitchen_prefs.datasets.names import content_of
 from kitchen_prefs.envs.demonstrations import demonstrate
 from kitchen_prefs.simulation.sessions import make_session
@@ -24,7 +31,7 @@ def test_the_files_do_not_depend_on_the_number_of_workers(small, home):
     assert _contents(alone) == _contents(small)
 
 
-def test_lerobots_own_writer_would_write_the_same(small, home):
+def test_lerobots_own_writer_would_write_the_same_and_statistics_of_the_sets(small, home):
     from lerobot.datasets import LeRobotDataset
 
     written = LeRobotDataset.create(
@@ -41,15 +48,19 @@ def test_lerobots_own_writer_would_write_the_same(small, home):
 
     for file in ("meta/info.json", "meta/stats.json"):
         ours, lerobots = (json.loads((root / file).read_text()) for root in (small, written.root))
+        if file == "meta/stats.json":
+            lerobots.pop(SETS)
         assert _approximately(ours) == lerobots
     for file in ("meta/tasks.parquet", "meta/episodes/chunk-000/file-000.parquet"):
         ours, lerobots = (pd.read_parquet(root / file) for root in (small, written.root))
+        lerobots = lerobots[[name for name in lerobots if not name.startswith(f"stats/{SETS}")]]
         pd.testing.assert_frame_equal(ours[sorted(ours)], lerobots[sorted(lerobots)])
     dataset = LeRobotDataset("kitchen_prefs/by_lerobot", root=written.root)
     ours = read_columns(small)
     for frame in (0, len(dataset) // 2, len(dataset) - 1):
         for name, column in ours.items():
-            np.testing.assert_array_equal(dataset[frame][name].numpy(), column[frame])
+            values = column[frame].ravel() if name == SETS else column[frame]
+            np.testing.assert_array_equal(dataset[frame][name].numpy(), values)
 
 
 def _approximately(tree):

@@ -16,6 +16,7 @@ from kitchen_prefs.instances import (
     IS_OBJECT,
     IS_PLACE,
     POSE,
+    as_rows,
     choosable,
     is_real,
 )
@@ -130,7 +131,7 @@ def test_training_uses_each_episode_s_label(dataset, kind):
     batch = frames(dataset, range(0, len(dataset), 11))
     labels = torch.stack([dataset[i]["preference"] for i in range(0, len(dataset), 11)])
     assert len(labels.unique()) == 2
-    sets = batch["observation.instances"]
+    sets = as_rows(batch["observation.instances"])
     scores = policy.network(sets, torch.zeros(sets.shape[:2], dtype=torch.bool), labels).scores
     loss, _ = policy(batch)
     torch.testing.assert_close(loss, F.cross_entropy(scores, chosen_rows(sets, batch["action"])))
