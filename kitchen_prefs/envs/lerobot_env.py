@@ -32,9 +32,9 @@ FEATURES_MAP = {
 FEATURE_TYPES = {"environment_state": FeatureType.ENV}
 
 
-def features_of(track: str) -> dict[str, PolicyFeature]:
+def features_of(track: str, flat: bool = True) -> dict[str, PolicyFeature]:
     """The environment's raw keys on a track, as LeRobot's features."""
-    shown = observation_space(track, prompts=1, flat=True).spaces
+    shown = observation_space(track, prompts=1, flat=flat).spaces
     return {
         ACTION: PolicyFeature(FeatureType.ACTION, action_space().shape),
         **{
@@ -53,6 +53,8 @@ class KitchenPrefsEnv(EnvConfig):
         task: The split.
         track: "standard", "privileged" (adds the preference's label) or "language" (gives the
             preference in words as the task).
+        flat: Whether a set is flat, (936,), as in the data sets. A checkpoint that was trained on
+            data of the first format and normalises its inputs needs rows, (72, 13).
 
     Raises:
         ValueError: If the split or the track is unknown.
@@ -61,6 +63,7 @@ class KitchenPrefsEnv(EnvConfig):
     task: str = "seen"
     fps: int = DishwasherLoading.metadata["render_fps"]
     track: str = "standard"
+    flat: bool = True
     features: dict[str, PolicyFeature] = field(default_factory=dict)
     features_map: dict[str, str] = field(default_factory=dict)
 
@@ -68,7 +71,7 @@ class KitchenPrefsEnv(EnvConfig):
         get_split(self.task)
         if self.track not in TRACKS:
             raise ValueError(f"There is no track {self.track!r}. {suggest(self.track, TRACKS)}")
-        self.features = features_of(self.track)
+        self.features = features_of(self.track, self.flat)
         self.features_map = {key: FEATURES_MAP[key] for key in self.features}
 
     @property
@@ -76,7 +79,8 @@ class KitchenPrefsEnv(EnvConfig):
         """The environment's arguments."""
         # Flat already in the observation, not by a processor: LeRobot records observations as the
         # environment gives them, and checks their shapes against the features.
-        return {"split": self.task, "track": self.track, "flat": True, "render_mode": "rgb_array"}
+        shown = {"track": self.track, "flat": self.flat, "render_mode": "rgb_array"}
+        return {"split": self.task, **shown}
 
     def create_envs(
         self, n_envs: int, use_async_envs: bool = False

@@ -79,11 +79,17 @@ class LoadedPolicy:
         names = observations[0].keys()
         stacked = {name: np.stack([one[name] for one in observations]) for name in names}
         batch: dict[str, Any] = preprocess_observation(stacked)
-        batch[OBS_INSTANCES] = batch[OBS_INSTANCES].flatten(1)  # (B, 936), as LeRobot shows them
+        batch[OBS_INSTANCES] = self._as_trained(batch[OBS_INSTANCES])
         batch["task"] = tasks
         with torch.inference_mode():
             action = self.policy.select_action(self.preprocessor(batch))  # (B, 7)
         return self.postprocessor(action).to("cpu", torch.float32).numpy()
+
+    def _as_trained(self, sets: torch.Tensor) -> torch.Tensor:
+        """The sets, (B, 72, 13), flat, as data sets have them since their second format."""
+        feature = (self.policy.config.input_features or {}).get(OBS_INSTANCES)
+        rows = feature is not None and len(feature.shape) == 2
+        return sets if rows else sets.flatten(1)
 
     @property
     def type(self) -> str:
