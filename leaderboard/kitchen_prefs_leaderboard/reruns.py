@@ -24,7 +24,7 @@ from kitchen_prefs.evaluation.isolation.isolated_policy import IsolatedPolicy, L
 from kitchen_prefs.evaluation.isolation.sandbox import has_sandbox
 from kitchen_prefs.evaluation.rollouts import BATCH_SIZE, roll_out
 from kitchen_prefs.metrics import Episode
-from kitchen_prefs.simulation.sessions import FRESH_USERS
+from kitchen_prefs.simulation.sessions import FRESH_USERS, PUBLISHED_USERS
 from kitchen_prefs.splits import TEST_SPLITS, get_split
 from kitchen_prefs_leaderboard.scoring import Entry
 from kitchen_prefs_leaderboard.verification import (
@@ -40,6 +40,7 @@ Files = dict[tuple["Run", str], EpisodeFile]  # the episodes of each run and spl
 
 ALONE = 2  # sessions of each split that are also rolled out in a batch of their own
 LABELLED_TRACKS = ("privileged", "open")  # there a preference may have to be one of the twelve
+MOST_SALT = 2**53  # the page's JavaScript holds every integer below
 
 
 @dataclass(frozen=True)
@@ -80,8 +81,9 @@ def fresh_run(folder: Path, track: str, salt: int | None) -> Run:
     if salt is None and begun:
         salt = int(begun[0].name.removeprefix("fresh-"))
     if salt is None:
-        drawn = secrets.randbelow(FRESH_USERS - 1) + 1
-        salt = drawn if track in LABELLED_TRACKS else FRESH_USERS + drawn
+        published = track in LABELLED_TRACKS
+        first, end = (PUBLISHED_USERS, MOST_SALT) if published else (FRESH_USERS, PUBLISHED_USERS)
+        salt = first + secrets.randbelow(end - first)
     return Run(f"fresh-{salt}", salt)
 
 

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from kitchen_prefs.simulation.sessions import FRESH_USERS, make_session
+from kitchen_prefs.simulation.sessions import FRESH_USERS, PUBLISHED_USERS, make_session
 from kitchen_prefs.splits import HELD_OUT_USERS, SEEN_USERS, SPLITS
 from kitchen_prefs_leaderboard.reruns import Rerunner, Run, fresh_run
 from kitchen_prefs_leaderboard.submission_writing import describe, policy_of, write_submission
@@ -59,9 +59,16 @@ def test_fresh_sessions_are_of_fresh_users(tmp_path):
 
 def test_fresh_sessions_of_a_track_with_labels_keep_the_twelve(tmp_path):
     run = fresh_run(tmp_path, "privileged", None)
-    assert 0 < run.salt < FRESH_USERS
+    assert run.salt >= PUBLISHED_USERS
     session = make_session("unseen_preferences", 3, run.salt)
     assert session.preference == make_session("unseen_preferences", 3).preference
+
+
+@pytest.mark.parametrize("track", ["standard", "privileged"])
+def test_fresh_sessions_cannot_be_found_by_trying(tmp_path, track):
+    salts = {fresh_run(tmp_path, track, None).salt for _ in range(8)}
+    assert len(salts) == 8
+    assert 2**40 < max(salts) < 2**53
 
 
 def test_a_rerun_that_was_begun_goes_on_with_its_seed(tmp_path):

@@ -25,11 +25,12 @@ NAMESPACES = (
     *("unshare", "--user", "--map-root-user", "--net", "--ipc", "--uts", "--mount"),
     *("--pid", "--fork", "--kill-child", "--mount-proc"),
 )
-# Arguments: the scratch folder, hidden folders, --, the command. Every mount but the scratch folder
-# becomes read-only; without capabilities the command cannot undo it.
+# Arguments: the scratch folder, hidden folders, --, the command. The scratch folder is in memory
+# and seen by this process alone, so that policies in several processes cannot exchange what they
+# observe. Every other mount becomes read-only; without capabilities the command cannot undo it.
 CONFINE = """
 scratch=$1; shift
-mount --bind "$scratch" "$scratch" || exit 125
+mount -t tmpfs -o size=256m none "$scratch" && cd "$scratch" || exit 125
 while [ "$1" != -- ]; do mount -t tmpfs -o size=4k none "$1" || exit 125; shift; done
 shift
 while read -r _ _ _ _ point options _; do
