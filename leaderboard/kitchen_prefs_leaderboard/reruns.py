@@ -96,12 +96,14 @@ class Rerunner:
         folder: The folder of the episodes; those that it holds are reused. The policy does not see
             it, because it names the fresh sessions.
         jobs: How many processes.
+        plugins: A folder of packages that these processes alone import from.
         limits: What each process may take.
     """
 
     settings: dict[str, Any]
     folder: Path
     jobs: int
+    plugins: Path | None = None
     limits: Limits | None = None
 
     def policy(self) -> IsolatedPolicy:
@@ -112,7 +114,9 @@ class Rerunner:
         """
         self.folder.mkdir(parents=True, exist_ok=True)
         log, hidden = self.folder / "policy.log", [self.folder]
-        return IsolatedPolicy(self.settings, log, hidden=hidden, limits=self.limits)
+        return IsolatedPolicy(
+            self.settings, log, hidden=hidden, plugins=self.plugins, limits=self.limits
+        )
 
     def roll_out(self, runs: Sequence[Run]) -> dict[str, Episodes]:
         """Roll the policy out.

@@ -1,5 +1,6 @@
 """Re-runs of policies that are nobody's friends, through the command."""
 
+import sys
 from pathlib import Path
 
 import pytest
@@ -17,12 +18,11 @@ ATTACKERS = Path(__file__).parents[1] / "attackers"
 @pytest.mark.slow
 @pytest.mark.usefixtures("few_sessions")
 def test_a_policy_that_reads_its_neighbours_in_the_batch_is_not_confirmed(
-    kitchen_prefs, monkeypatch, tmp_path, capsys
+    kitchen_prefs, tmp_path, capsys
 ):
-    monkeypatch.setenv("PYTHONPATH", str(ATTACKERS))
     options = ["--attack=neighbours"]
     settings = {"policy_type": "attackers", "options": options, "track": "standard"}
-    rerunner = Rerunner(settings, tmp_path / "own", jobs=1)
+    rerunner = Rerunner(settings, tmp_path / "own", jobs=1, plugins=ATTACKERS)
     submission = describe(
         name="Neighbours",
         authors=["A. Attacker"],
@@ -35,13 +35,21 @@ def test_a_policy_that_reads_its_neighbours_in_the_batch_is_not_confirmed(
     write_submission(submission, episodes, tmp_path / "submission")
     policy = ("--policy.type=attackers", "--policy.attack=neighbours")
     folders = (f"--verifications={tmp_path / 'records'}", f"--out={tmp_path / 'out'}")
-    rerun = ("leaderboard", "verify", tmp_path / "submission", "--rerun", "--jobs=1")
+    rerun = (
+        "leaderboard",
+        "verify",
+        tmp_path / "submission",
+        "--rerun",
+        "--jobs=1",
+        f"--plugins={ATTACKERS}",
+    )
     assert kitchen_prefs(*rerun, *policy, *folders, "--by=A. Maintainer") == 1
     assert "its episodes depend on each other" in capsys.readouterr().out
     (record,) = (tmp_path / "records").glob("*.json")
     found = Verification.model_validate_json(record.read_text())
     assert (found.repeats, found.independent, found.by) == (True, False, "A. Maintainer")
     assert read_verifications(tmp_path / "records") == {}
+    assert "lerobot_policy_attackers" not in sys.modules  # its code has run elsewhere
 
 
 def test_fresh_sessions_are_of_fresh_users(tmp_path):

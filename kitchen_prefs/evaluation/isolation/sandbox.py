@@ -64,9 +64,17 @@ def confined(command: Sequence[str], scratch: Path, hidden: Sequence[Path]) -> l
     return ending_with_this([*NAMESPACES, "sh", "-c", CONFINE, "sh", *folders, "--", *command])
 
 
-def scrubbed_environment(scratch: Path) -> dict[str, str]:
-    """The variables of the process: no tokens, no paths of the evaluation, one thread."""
+def scrubbed_environment(scratch: Path, plugins: Path | None = None) -> dict[str, str]:
+    """The variables of the process: no tokens, no paths of the evaluation, one thread.
+
+    Args:
+        scratch: The folder that it may write to.
+        plugins: A folder of packages that this process alone imports from.
+    """
     kept = {name: os.environ[name] for name in KEPT_VARIABLES if name in os.environ}
+    if plugins:
+        folders = [str(plugins.resolve()), kept.get("PYTHONPATH", "")]
+        kept["PYTHONPATH"] = os.pathsep.join(filter(None, folders))
     return kept | {
         "HOME": str(scratch),
         "TMPDIR": str(scratch),
