@@ -38,7 +38,7 @@ Episodes = dict[str, list[Episode]]  # of each test split, in the order of the s
 Batch = tuple["Run", str, tuple[int, ...]]  # a run, a split and some of its sessions
 Files = dict[tuple["Run", str], EpisodeFile]  # the episodes of each run and split
 
-ALONE = 2  # sessions of each split that are also rolled out in a batch of their own
+ALONE = 2  # fresh sessions of each split that are also rolled out in a batch of their own
 LABELLED_TRACKS = ("privileged", "open")  # there a preference may have to be one of the twelve
 MOST_SALT = 2**53  # the page's JavaScript holds every integer below
 
@@ -50,17 +50,19 @@ class Run:
     Attributes:
         name: The folder of its episodes.
         salt: The session seed.
-        alone: Whether it has few sessions, each in a batch of its own.
+        few: Whether it has `ALONE` sessions of each split, which the seed chooses.
+        batch_size: How many sessions are rolled out at once.
     """
 
     name: str
     salt: int
-    alone: bool = False
+    few: bool = False
+    batch_size: int = BATCH_SIZE
 
     def sessions(self, split: str) -> Sequence[int]:
         """Its sessions of a split."""
         everything = range(get_split(split).sessions)
-        if not self.alone:
+        if not self.few:
             return everything
         generator = np.random.default_rng([self.salt, TEST_SPLITS.index(split)])
         return sorted(generator.choice(everything, ALONE, replace=False).tolist())
@@ -189,12 +191,15 @@ def rerun_submission(entry: Entry, rerunner: Rerunner, salt: int | None, by: str
         ValueError: If the policy fails, see `Rerunner.roll_out`.
     """
     fresh = fresh_run(rerunner.folder, entry.submission.track, salt)
-    first, alone = Run("published-1", 0), Run("alone", 0, alone=True)
+    first = Run("published-1", 0)
+    # Fresh sessions, because a policy may know the published ones and behave there.
+    alone = Run(f"alone-{fresh.salt}", fresh.salt, few=True, batch_size=1)
     found = rerunner.roll_out([first, alone, fresh])
     reruns = [found[first.name]]
     if needs_more_runs(entry, reruns[0]):
-        more = [Run(f"published-{n}", 0) for n in range(2, STOCHASTIC_RUNS + 1)]
-        reruns += rerunner.roll_out(more).values()
+        numbers = range(1, STOCHASTIC_RUNS + 1)
+        singly = [Run(f"published-singly-{n}", 0, batch_size=1) for n in numbers]
+        reruns = list(rerunner.roll_out(singly).values())
     return compare(
         entry,
         reruns,
@@ -213,8 +218,7 @@ def _shuffled_batches(files: Files) -> list[Batch]:
     for (run, split), file in files.items():
         missing = sorted(set(run.sessions(split)) - {e.session for e in file.episodes})
         order = generator.permutation(missing).tolist()
-        size = 1 if run.alone else BATCH_SIZE
-        batches += [(run, split, batch) for batch in batched(order, size)]
+        batches += [(run, split, batch) for batch in batched(order, run.batch_size)]
     return [batches[i] for i in generator.permutation(len(batches))]
 
 

@@ -7,7 +7,7 @@ import pytest
 
 from kitchen_prefs.simulation.sessions import FRESH_USERS, PUBLISHED_USERS, make_session
 from kitchen_prefs.splits import HELD_OUT_USERS, SEEN_USERS, SPLITS
-from kitchen_prefs_leaderboard.reruns import Rerunner, Run, fresh_run
+from kitchen_prefs_leaderboard.reruns import Rerunner, Run, fresh_run, rerun_submission
 from kitchen_prefs_leaderboard.submission_writing import describe, policy_of, write_submission
 from kitchen_prefs_leaderboard.verification import Verification, read_verifications
 
@@ -84,3 +84,41 @@ def test_a_rerun_that_was_begun_goes_on_with_its_seed(tmp_path):
     (tmp_path / run.name).mkdir()
     assert fresh_run(tmp_path, "standard", None) == run
     assert fresh_run(tmp_path, "standard", 5).salt == 5
+
+
+class RecordedRuns:
+    """In place of a `Rerunner`: notes what it is to roll out; each run fails in other sessions."""
+
+    def __init__(self, folder, episodes, worse):
+        self.folder, self.episodes, self.worse, self.runs = folder, episodes, iter(worse), []
+
+    def roll_out(self, runs):
+        self.runs += runs
+        return {
+            run.name: self.episodes([] if run.salt else next(self.worse), run.salt) for run in runs
+        }
+
+
+def test_a_policy_that_does_not_repeat_itself_is_judged_by_batches_of_one(
+    make_entry, few_episodes, tmp_path
+):
+    rerunner = RecordedRuns(tmp_path, few_episodes, ([0, 1], [2, 3], [4, 5], [0, 3]))
+    found = rerun_submission(make_entry("a", worse=[2]), rerunner, 7, "A. Maintainer")
+    assert [run.batch_size for run in rerunner.runs if run.name.startswith("published")] == [
+        *(16, 1, 1, 1)
+    ]
+    assert found.runs == 3
+    assert found.itself < 0.95
+
+
+def test_episodes_rolled_out_alone_are_fresh_ones_that_the_seed_chooses(
+    make_entry, few_episodes, tmp_path
+):
+    chosen = set()
+    for salt in (7, 8, 9):
+        rerunner = RecordedRuns(tmp_path, few_episodes, ([],))
+        rerun_submission(make_entry("a"), rerunner, salt, "A. Maintainer")
+        (alone,) = (run for run in rerunner.runs if run.few)
+        assert (alone.salt, alone.batch_size) == (salt, 1)
+        chosen.add(tuple(alone.sessions("seen")))
+    assert len(chosen) == 3
