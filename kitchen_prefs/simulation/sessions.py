@@ -34,6 +34,9 @@ from kitchen_prefs.splits import (
 # From this salt on the five held-out users, too, have preferences that are drawn anew: a re-run's
 # users are then users whom nobody has published. The seven of training stay.
 FRESH_USERS = 2**31
+# From this salt on the five are the published ones again. Both ranges have more salts than a policy
+# can try until one gives the session that it observes: 2**31 would take it nine hours.
+PUBLISHED_USERS = 2**52
 LEAST_PRESENT = 0.5  # at least half of the dishes stand there at the start
 
 
@@ -172,7 +175,7 @@ def _preference_of(user: int, salt: int) -> Preference:
     """A user's preference; those from 12 on are drawn anew for each salt, see `FRESH_USERS`."""
     if user in OTHER_USERS:
         return _other_preferences(salt)[user - OTHER_USERS[0]]
-    if user in HELD_OUT_USERS and salt >= FRESH_USERS:
+    if user in HELD_OUT_USERS and FRESH_USERS <= salt < PUBLISHED_USERS:
         return _other_preferences(salt)[len(OTHER_USERS) + user - HELD_OUT_USERS[0]]
     return TWELVE[user]
 

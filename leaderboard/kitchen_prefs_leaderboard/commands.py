@@ -142,6 +142,15 @@ def verify(
         typer.Option(help="The seed of the fresh sessions.", min=1, show_default="at random"),
     ] = None,
     by: Annotated[str, typer.Option(help="Who re-runs it.")] = "unknown",
+    plugins: Annotated[
+        Path | None,
+        typer.Option(
+            help="The folder of the policy's package, for `pip install --target`.",
+            show_default="none",
+            file_okay=False,
+            exists=True,
+        ),
+    ] = None,
     verifications: Verifications = KEPT,
     out: Annotated[Path, typer.Option(help="The folder of the episodes.")] = Path("outputs/verify"),
     jobs: Jobs = CORES,
@@ -151,7 +160,8 @@ def verify(
     A re-run rolls the policy out again, on the test splits and on fresh sessions of fresh users,
     which were not known when the submission was made. The policy runs in a process of its own that
     receives observations alone. The record is kept; only rows with one are ranked.
-    A command that was killed resumes.
+    A command that was killed resumes. A stranger's package belongs into a folder of its own,
+    --plugins, from which that process alone imports.
 
     For example:
     kitchen-prefs leaderboard verify leaderboard/submissions/ttp_plus --rerun
@@ -161,7 +171,7 @@ def verify(
     from kitchen_prefs_leaderboard.scoring import read_known, replay_submissions
 
     if not rerun:
-        if path or policy_type or context.args:
+        if path or policy_type or plugins or context.args:
             raise ValueError("A policy is rolled out again with --rerun only; add it.")
         replay_submissions([read_known(folder)], jobs)
         typer.echo(f"All actions of {folder} lead to the states that it names.")
@@ -178,7 +188,7 @@ def verify(
         typer.echo(NO_SANDBOX, err=True)
     submission = read_known(folder)
     settings = policy_settings(path, policy_type, context.args, submission.description.track)
-    rerunner = Rerunner(settings, out / submission.digest[:12], jobs)
+    rerunner = Rerunner(settings, out / submission.digest[:12], jobs, plugins)
     verification.check_policy(submission.description, policy_of(rerunner.described))
     (entry,) = replay_submissions([submission], jobs)
     with at_work_alone(rerunner.folder):

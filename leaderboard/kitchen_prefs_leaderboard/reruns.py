@@ -24,7 +24,7 @@ from kitchen_prefs.evaluation.isolation.isolated_policy import IsolatedPolicy, L
 from kitchen_prefs.evaluation.isolation.sandbox import has_sandbox
 from kitchen_prefs.evaluation.rollouts import BATCH_SIZE, roll_out
 from kitchen_prefs.metrics import Episode
-from kitchen_prefs.simulation.sessions import FRESH_USERS
+from kitchen_prefs.simulation.sessions import FRESH_USERS, PUBLISHED_USERS
 from kitchen_prefs.splits import TEST_SPLITS, get_split
 from kitchen_prefs_leaderboard.scoring import Entry
 from kitchen_prefs_leaderboard.verification import (
@@ -38,8 +38,9 @@ Episodes = dict[str, list[Episode]]  # of each test split, in the order of the s
 Batch = tuple["Run", str, tuple[int, ...]]  # a run, a split and some of its sessions
 Files = dict[tuple["Run", str], EpisodeFile]  # the episodes of each run and split
 
-ALONE = 2  # sessions of each split that are also rolled out in a batch of their own
+ALONE = 2  # fresh sessions of each split that are also rolled out in a batch of their own
 LABELLED_TRACKS = ("privileged", "open")  # there a preference may have to be one of the twelve
+MOST_SALT = 2**53  # the page's JavaScript holds every integer below
 
 
 @dataclass(frozen=True)
@@ -49,17 +50,19 @@ class Run:
     Attributes:
         name: The folder of its episodes.
         salt: The session seed.
-        alone: Whether it has few sessions, each in a batch of its own.
+        few: Whether it has `ALONE` sessions of each split, which the seed chooses.
+        batch_size: How many sessions are rolled out at once.
     """
 
     name: str
     salt: int
-    alone: bool = False
+    few: bool = False
+    batch_size: int = BATCH_SIZE
 
     def sessions(self, split: str) -> Sequence[int]:
         """Its sessions of a split."""
         everything = range(get_split(split).sessions)
-        if not self.alone:
+        if not self.few:
             return everything
         generator = np.random.default_rng([self.salt, TEST_SPLITS.index(split)])
         return sorted(generator.choice(everything, ALONE, replace=False).tolist())
@@ -80,8 +83,9 @@ def fresh_run(folder: Path, track: str, salt: int | None) -> Run:
     if salt is None and begun:
         salt = int(begun[0].name.removeprefix("fresh-"))
     if salt is None:
-        drawn = secrets.randbelow(FRESH_USERS - 1) + 1
-        salt = drawn if track in LABELLED_TRACKS else FRESH_USERS + drawn
+        published = track in LABELLED_TRACKS
+        first, end = (PUBLISHED_USERS, MOST_SALT) if published else (FRESH_USERS, PUBLISHED_USERS)
+        salt = first + secrets.randbelow(end - first)
     return Run(f"fresh-{salt}", salt)
 
 
@@ -94,12 +98,14 @@ class Rerunner:
         folder: The folder of the episodes; those that it holds are reused. The policy does not see
             it, because it names the fresh sessions.
         jobs: How many processes.
+        plugins: A folder of packages that these processes alone import from.
         limits: What each process may take.
     """
 
     settings: dict[str, Any]
     folder: Path
     jobs: int
+    plugins: Path | None = None
     limits: Limits | None = None
 
     def policy(self) -> IsolatedPolicy:
@@ -110,7 +116,9 @@ class Rerunner:
         """
         self.folder.mkdir(parents=True, exist_ok=True)
         log, hidden = self.folder / "policy.log", [self.folder]
-        return IsolatedPolicy(self.settings, log, hidden=hidden, limits=self.limits)
+        return IsolatedPolicy(
+            self.settings, log, hidden=hidden, plugins=self.plugins, limits=self.limits
+        )
 
     def roll_out(self, runs: Sequence[Run]) -> dict[str, Episodes]:
         """Roll the policy out.
@@ -183,12 +191,15 @@ def rerun_submission(entry: Entry, rerunner: Rerunner, salt: int | None, by: str
         ValueError: If the policy fails, see `Rerunner.roll_out`.
     """
     fresh = fresh_run(rerunner.folder, entry.submission.track, salt)
-    first, alone = Run("published-1", 0), Run("alone", 0, alone=True)
+    first = Run("published-1", 0)
+    # Fresh sessions, because a policy may know the published ones and behave there.
+    alone = Run(f"alone-{fresh.salt}", fresh.salt, few=True, batch_size=1)
     found = rerunner.roll_out([first, alone, fresh])
     reruns = [found[first.name]]
     if needs_more_runs(entry, reruns[0]):
-        more = [Run(f"published-{n}", 0) for n in range(2, STOCHASTIC_RUNS + 1)]
-        reruns += rerunner.roll_out(more).values()
+        numbers = range(1, STOCHASTIC_RUNS + 1)
+        singly = [Run(f"published-singly-{n}", 0, batch_size=1) for n in numbers]
+        reruns = list(rerunner.roll_out(singly).values())
     return compare(
         entry,
         reruns,
@@ -207,8 +218,7 @@ def _shuffled_batches(files: Files) -> list[Batch]:
     for (run, split), file in files.items():
         missing = sorted(set(run.sessions(split)) - {e.session for e in file.episodes})
         order = generator.permutation(missing).tolist()
-        size = 1 if run.alone else BATCH_SIZE
-        batches += [(run, split, batch) for batch in batched(order, size)]
+        batches += [(run, split, batch) for batch in batched(order, run.batch_size)]
     return [batches[i] for i in generator.permutation(len(batches))]
 
 

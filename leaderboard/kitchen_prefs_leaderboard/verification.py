@@ -143,7 +143,7 @@ def needs_more_runs(entry: Entry, first: Episodes) -> bool:
     """Whether a policy has to be rolled out again to be judged: it did not repeat its submission.
 
     A deterministic policy repeats itself; one that does not is rolled out `STOCHASTIC_RUNS` times,
-    so that its own spread is known.
+    so that its own spread is known, with each session in a batch of its own.
     """
     return alike(entry.episodes, first) < ALIKE
 
@@ -173,7 +173,8 @@ def compare(
     within 1.96 standard errors, which come from the runs and never from the submission.
 
     An episode is independent of others if, rolled out in a batch of its own, it goes as in a batch
-    with others; of a policy that does not repeat itself this cannot be known.
+    with others; of a policy that does not repeat itself this cannot be known, and its runs are of
+    batches of one.
 
     It generalises if on fresh sessions its Score is not lower than in the re-run by more than both
     intervals allow, their half-widths combined as for independent means.
@@ -181,7 +182,7 @@ def compare(
     Args:
         entry: The submission, replayed.
         reruns: The policy's episodes on the published sessions, one or `STOCHASTIC_RUNS` times.
-        alone: Its episodes on some of them, each in a batch of its own.
+        alone: Its episodes on some fresh sessions, each in a batch of its own.
         fresh: Its episodes on fresh sessions.
         salt: The session seed of the fresh sessions.
         by: Who re-runs.
@@ -193,7 +194,7 @@ def compare(
     scores = _mean_scores(reruns)
     rerun = _interval_of(reruns[0], scores)
     on_fresh = mean_of_splits(list(fresh.values()), score)
-    went_alone = alike(reruns[0], alone)
+    went_alone = alike(fresh, alone)
     return Verification(
         procedure=PROCEDURE,
         digest=entry.digest,

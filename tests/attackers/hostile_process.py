@@ -30,6 +30,9 @@ def serve(settings, requests, replies):
         hoard = []
         while True:
             hoard.append(np.empty(10**7))
+    if behaviour == "prints":  # until the disk is full, if nothing stops it
+        while True:
+            os.write(2, b"x" * 2**20)
     actions = np.zeros((2, 7)) if behaviour == "huge" else np.zeros((1, 3))
     policy_process.send(replies, {"actions": actions})
 

@@ -24,12 +24,12 @@ def found(few_episodes):
     """What a re-run of an entry comes to, in which some sessions go badly."""
 
     def compared(entry, rerun=(), fresh=(), runs=None, alone=None):
-        reruns = runs or [few_episodes(rerun)]
+        on_fresh = few_episodes(fresh, SALT)
         return compare(
             entry,
-            reruns,
-            alone or reruns[0],
-            few_episodes(fresh, SALT),
+            runs or [few_episodes(rerun)],
+            alone or on_fresh,
+            on_fresh,
             salt=SALT,
             by="A. Maintainer",
             sandbox=True,
@@ -100,7 +100,7 @@ def test_a_stochastic_policy_is_judged_by_its_own_spread(
 def test_a_policy_whose_episodes_depend_on_each_other_is_not_confirmed(
     make_entry, found, few_episodes
 ):
-    verification = found(make_entry("a"), alone=few_episodes(ALL))
+    verification = found(make_entry("a"), alone=few_episodes(ALL, SALT))
     assert verification.repeats
     assert not verification.independent
     assert not verification.confirmed

@@ -45,6 +45,7 @@ class IsolatedPolicy:
         settings: The arguments of `load_policy`; a path names a folder.
         log: What the process prints.
         hidden: Folders that the process must not see.
+        plugins: A folder of packages that it alone imports from, with the policy's code.
         limits: What it may take.
         seeds: Seeds the policy's random numbers, a number for each batch of episodes; they tell
             nothing of the sessions.
@@ -67,6 +68,7 @@ class IsolatedPolicy:
         log: Path,
         *,
         hidden: Sequence[Path] = (),
+        plugins: Path | None = None,
         limits: Limits | None = None,
         seeds: np.random.Generator | None = None,
     ) -> None:
@@ -85,7 +87,7 @@ class IsolatedPolicy:
                 stdout=subprocess.PIPE,
                 stderr=file,
                 cwd=scratch,
-                env=scrubbed_environment(scratch),
+                env=scrubbed_environment(scratch, plugins),
                 start_new_session=True,
             )
         try:

@@ -13,6 +13,7 @@ from typing import BinaryIO
 
 from kitchen_prefs.evaluation.isolation.messages import PipeClosedError, receive, send
 
+MOST_FILE = 64 * 1024 * 1024  # bytes of a file that it writes, its log included
 MOST_OBSERVATION = 256 * 1024 * 1024  # bytes; a batch of 16 with one prompt each has 1.6 million
 
 
@@ -21,6 +22,7 @@ def main() -> None:
     settings = json.loads(sys.argv[1])
     memory = settings.pop("memory")
     resource.setrlimit(resource.RLIMIT_DATA, (memory, memory))
+    resource.setrlimit(resource.RLIMIT_FSIZE, (MOST_FILE, MOST_FILE))
     requests, replies = os.fdopen(os.dup(0), "rb"), os.fdopen(os.dup(1), "wb")
     os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
     os.dup2(2, 1)  # what the policy prints goes into the log

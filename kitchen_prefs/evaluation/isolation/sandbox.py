@@ -25,11 +25,12 @@ NAMESPACES = (
     *("unshare", "--user", "--map-root-user", "--net", "--ipc", "--uts", "--mount"),
     *("--pid", "--fork", "--kill-child", "--mount-proc"),
 )
-# Arguments: the scratch folder, hidden folders, --, the command. Every mount but the scratch folder
-# becomes read-only; without capabilities the command cannot undo it.
+# Arguments: the scratch folder, hidden folders, --, the command. The scratch folder is in memory
+# and seen by this process alone, so that policies in several processes cannot exchange what they
+# observe. Every other mount becomes read-only; without capabilities the command cannot undo it.
 CONFINE = """
 scratch=$1; shift
-mount --bind "$scratch" "$scratch" || exit 125
+mount -t tmpfs -o size=256m none "$scratch" && cd "$scratch" || exit 125
 while [ "$1" != -- ]; do mount -t tmpfs -o size=4k none "$1" || exit 125; shift; done
 shift
 while read -r _ _ _ _ point options _; do
@@ -63,9 +64,17 @@ def confined(command: Sequence[str], scratch: Path, hidden: Sequence[Path]) -> l
     return ending_with_this([*NAMESPACES, "sh", "-c", CONFINE, "sh", *folders, "--", *command])
 
 
-def scrubbed_environment(scratch: Path) -> dict[str, str]:
-    """The variables of the process: no tokens, no paths of the evaluation, one thread."""
+def scrubbed_environment(scratch: Path, plugins: Path | None = None) -> dict[str, str]:
+    """The variables of the process: no tokens, no paths of the evaluation, one thread.
+
+    Args:
+        scratch: The folder that it may write to.
+        plugins: A folder of packages that this process alone imports from.
+    """
     kept = {name: os.environ[name] for name in KEPT_VARIABLES if name in os.environ}
+    if plugins:
+        folders = [str(plugins.resolve()), kept.get("PYTHONPATH", "")]
+        kept["PYTHONPATH"] = os.pathsep.join(filter(None, folders))
     return kept | {
         "HOME": str(scratch),
         "TMPDIR": str(scratch),

@@ -19,7 +19,7 @@ from kitchen_prefs.evaluation.episode_files import read_episodes
 from kitchen_prefs.evaluation.isolation import isolated_policy
 from kitchen_prefs.evaluation.isolation.isolated_policy import IsolatedPolicy, Limits
 from kitchen_prefs.evaluation.isolation.messages import PipeClosedError, receive, send
-from kitchen_prefs.evaluation.isolation.sandbox import has_sandbox
+from kitchen_prefs.evaluation.isolation.sandbox import confined, has_sandbox
 from kitchen_prefs.evaluation.policy_loading import load_policy
 from kitchen_prefs.evaluation.rollouts import roll_out
 from kitchen_prefs.metrics import packing_efficiency
@@ -58,6 +58,7 @@ def hostile(attackers, monkeypatch, tmp_path):
         ("exits", "The policy did not decide"),
         ("hoards", "The policy did not decide"),
         ("huge", "The policy did not decide"),
+        ("prints", "The policy did not decide"),
         ("small", "The policy did not decide"),
     ],
 )
@@ -107,6 +108,23 @@ def test_evaluate_untrusted_gives_the_episodes_of_evaluate(few_sessions, tmp_pat
     arguments = ("--split=val", f"--out={tmp_path / 'x'}", "--untrusted", "--policy.a=1")
     with pytest.raises(ValueError, match=r"^The policy has no setting 'a'"):
         call("evaluate", *rule, *arguments)
+
+
+@pytest.mark.skipif(not has_sandbox(), reason="needs namespaces")
+def test_what_one_process_writes_no_other_process_sees(tmp_path):
+    def run(command):
+        done = subprocess.run(
+            confined(["sh", "-c", command], tmp_path, []),
+            cwd=tmp_path,
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        return done.stdout
+
+    assert run("echo observed > note; cat note; pwd") == f"observed\n{tmp_path}\n"
+    assert run("ls") == ""
+    assert not list(tmp_path.iterdir())
 
 
 @pytest.mark.skipif(not has_sandbox(), reason="needs setpriv")
