@@ -96,3 +96,32 @@ def test_published_names_are_recorded_with_a_fingerprint():
     for name in dataset_names():
         assert len(published_fingerprint(name) or "") == 64
     assert published_fingerprint(SMALL) is None
+
+
+def test_a_data_set_of_an_earlier_format_is_made_again(home):
+    root = make_dataset(SMALL)
+    fingerprint = json.loads((root / MANIFEST).read_text())["fingerprint"]
+    as_format_1(root)
+    with pytest.raises(ValueError, match=rf"is of format 1.*datasets make {SMALL}` makes it again"):
+        list(verify_dataset(SMALL))
+    with pytest.warns(UserWarning, match="is of an earlier format, so it is made again"):
+        dataset = load_dataset(SMALL)
+    assert dataset[0]["observation.instances"].shape == (936,)
+    manifest = json.loads((root / MANIFEST).read_text())
+    assert (manifest["format"], manifest["fingerprint"]) == (2, fingerprint)
+
+
+def test_a_damaged_data_set_of_an_earlier_format_is_kept(home):
+    root = make_dataset(SMALL)
+    as_format_1(root)
+    (root / "meta" / "stats.json").write_text("{}")
+    with pytest.raises(ValueError, match="is of format 1"):
+        load_dataset(SMALL)
+    assert (root / "meta" / "stats.json").read_text() == "{}"
+
+
+def as_format_1(root):
+    """Make a manifest one of the first format, which did not name itself."""
+    manifest = json.loads((root / MANIFEST).read_text())
+    manifest.pop("format")
+    (root / MANIFEST).write_text(json.dumps(manifest))
