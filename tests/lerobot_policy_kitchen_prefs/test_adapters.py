@@ -6,12 +6,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 import torch
+from act_checkpoints import rewrite
 from lerobot.configs import PreTrainedConfig
 from lerobot.policies import get_policy_class, make_pre_post_processors
 from lerobot.utils.import_utils import is_package_available
 
 from kitchen_prefs.envs.environment import DishwasherLoading
 from kitchen_prefs.evaluation import adapter_reading
+from kitchen_prefs.evaluation.isolation.isolated_policy import IsolatedPolicy
 from kitchen_prefs.evaluation.policy_loading import load_policy
 
 CHECKPOINTS = Path(__file__).parents[2] / "policies/checkpoints"
@@ -80,3 +82,19 @@ def test_without_peft_an_adapter_says_what_to_install(tmp_path, monkeypatch):
     monkeypatch.setattr(adapter_reading, "is_package_available", lambda _: False)
     with pytest.raises(ValueError, match=r"needs PEFT; install it: pip install 'lerobot\[peft\]'"):
         load_policy(str(tmp_path))
+
+
+@needs_peft
+def test_an_adapter_of_a_relative_path_loads_in_a_process_of_its_own(tmp_path, monkeypatch):
+    monkeypatch.chdir(CHECKPOINTS.parents[1])
+    save_adapter("gnn_tuned", tmp_path / "adapter")
+    config = tmp_path / "adapter" / "adapter_config.json"
+    rewrite(config, lambda found: found.update(base_model_name_or_path=relative("gnn_tuned")))
+    here = load_policy(str(tmp_path / "adapter"))
+    settings = {"path": str(tmp_path / "adapter"), "track": "privileged"}
+    with IsolatedPolicy(settings, tmp_path / "log") as policy:
+        assert policy.fingerprint == here.fingerprint
+
+
+def relative(name):
+    return str((CHECKPOINTS / name).relative_to(CHECKPOINTS.parents[1]))

@@ -78,7 +78,8 @@ class IsolatedPolicy:
         self._track = settings.get("track")
         self._scratch = TemporaryDirectory(prefix="kitchen_prefs_policy_")
         scratch = Path(self._scratch.name)
-        arguments = json.dumps({**settings, "memory": self._limits.memory})
+        started = {"memory": self._limits.memory, "folder": str(Path.cwd())}
+        arguments = json.dumps(settings | started)
         command = [sys.executable, "-P", "-m", PROGRAM, arguments]
         with log.open("ab") as file:
             self._process = subprocess.Popen(

@@ -18,9 +18,14 @@ MOST_OBSERVATION = 256 * 1024 * 1024  # bytes; a batch of 16 with one prompt eac
 
 
 def main() -> None:
-    """Serve one policy; SETTINGS is a JSON object of `load_policy`'s arguments and the memory."""
+    """Serve one policy.
+
+    SETTINGS is a JSON object of `load_policy`'s arguments, the memory that the process may take,
+    and the folder where relative paths begin, as an adapter names its policy.
+    """
     settings = json.loads(sys.argv[1])
     memory = settings.pop("memory")
+    os.chdir(settings.pop("folder"))
     resource.setrlimit(resource.RLIMIT_DATA, (memory, memory))
     resource.setrlimit(resource.RLIMIT_FSIZE, (MOST_FILE, MOST_FILE))
     requests, replies = os.fdopen(os.dup(0), "rb"), os.fdopen(os.dup(1), "wb")
