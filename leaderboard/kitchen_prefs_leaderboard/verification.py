@@ -6,7 +6,7 @@ leaderboard keep the record, never a submission: VERIFICATIONS/<digest of the su
 What a re-run cannot prove stands in leaderboard/README.md.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict
 from math import hypot, sqrt
 from pathlib import Path
@@ -16,7 +16,7 @@ import numpy as np
 from pydantic import Field, ValidationError
 
 from kitchen_prefs.metrics import Episode, Interval, mean_of_splits, score
-from kitchen_prefs.splits import TEST_SPLITS
+from kitchen_prefs.splits import HELD_OUT_USERS, SEEN_USERS, TEST_SPLITS
 from kitchen_prefs.utils.files import write_json
 from kitchen_prefs_leaderboard.scoring import MEAN, Entry
 from kitchen_prefs_leaderboard.submission_format import (
@@ -33,6 +33,7 @@ PROCEDURE: Literal[2] = 2
 ALIKE = 0.95  # of the episodes of a deterministic policy: other processors round otherwise
 STOCHASTIC_RUNS = 3
 SIGNIFICANT = 1.96  # standard errors, for 95 %
+FIVE, TWO_HUNDRED = "unseen_preferences", "many_preferences"  # splits of so many other users
 
 Episodes = Mapping[str, Sequence[Episode]]  # of each test split
 
@@ -177,7 +178,8 @@ def compare(
     batches of one.
 
     It generalises if on fresh sessions its Score is not lower than in the re-run by more than both
-    intervals allow, their half-widths combined as for independent means.
+    intervals allow, their half-widths combined as for independent means: on the sessions of the
+    training users, and on those of all others, whose fresh users are other users.
 
     Args:
         entry: The submission, replayed.
@@ -212,8 +214,9 @@ def compare(
         scores={split: [round(value, 4) for value in scores[split]] for split in scores},
         repeats=same >= ALIKE if deterministic else _within_spread(entry, reruns),
         independent=went_alone >= ALIKE or not deterministic,
-        generalises=rerun.mean - on_fresh.mean
-        <= hypot(rerun.mean - rerun.low, on_fresh.high - on_fresh.mean),
+        generalises=all(
+            _as_good_on_fresh(reruns[0], scores, fresh, known=known) for known in (True, False)
+        ),
     )
 
 
@@ -234,12 +237,59 @@ def _mean_scores(reruns: Sequence[Episodes]) -> dict[str, list[float]]:
 
 def _interval_of(episodes: Episodes, scores: Mapping[str, Sequence[float]]) -> Interval:
     """The mean of given scores over the sessions of some episodes."""
+    return mean_of_splits(list(episodes.values()), _given(episodes, scores))
+
+
+def _given(episodes: Episodes, scores: Mapping[str, Sequence[float]]) -> Callable[[Episode], float]:
+    """Given scores as a metric of the episodes of these sessions."""
     of_session = {
         (e.split, e.session): value
         for split, of_split in episodes.items()
         for e, value in zip(of_split, scores[split], strict=True)
     }
-    return mean_of_splits(list(episodes.values()), lambda e: of_session[e.split, e.session])
+    return lambda e: of_session[e.split, e.session]
+
+
+def _as_good_on_fresh(
+    published: Episodes, scores: Mapping[str, Sequence[float]], fresh: Episodes, *, known: bool
+) -> bool:
+    """Whether Score on fresh sessions is not significantly lower than on the published ones.
+
+    Args:
+        published: The episodes of the published sessions.
+        scores: Score in each of them.
+        fresh: The episodes of the fresh sessions.
+        known: Compare the sessions of the training users, else those of all others.
+    """
+    ours, theirs = _of_users(published, known), _of_users(fresh, known)
+    before = mean_of_splits(ours, _given(published, scores))
+    after = mean_of_splits(theirs, score)
+    errors = (before.mean - before.low, after.high - after.mean)
+    users = 0.0 if known else _error_of_other_users(published, fresh)
+    return before.mean - after.mean <= hypot(*errors, SIGNIFICANT * users)
+
+
+def _error_of_other_users(published: Episodes, fresh: Episodes) -> float:
+    """The standard error of the difference between five published and five fresh users.
+
+    The bootstrap resamples the sessions of the five held-out users, who were the same, but fresh
+    sessions are of five others. How much users differ is known from the two hundred others.
+    """
+    if {e.preference for e in fresh[FIVE]} == {e.preference for e in published[FIVE]}:
+        return 0.0
+    between = float(np.std([score(e) for e in fresh[TWO_HUNDRED]], ddof=1))
+    splits = len(_of_users(fresh, known=False))
+    share = (splits - 1) / splits  # of the splits with other users, one has two hundred
+    return share * between * sqrt(2 / len(HELD_OUT_USERS))
+
+
+def _of_users(episodes: Episodes, known: bool) -> list[list[Episode]]:
+    """Each split's episodes of the training users, or of all others, where there are some."""
+    of_splits = [
+        [e for e in of_split if (e.preference in SEEN_USERS) == known]
+        for of_split in episodes.values()
+    ]
+    return [of_split for of_split in of_splits if of_split]
 
 
 def _within_spread(entry: Entry, reruns: Sequence[Episodes]) -> bool:

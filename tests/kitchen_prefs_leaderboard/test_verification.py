@@ -1,6 +1,7 @@
 """What a re-run must show to confirm a submission, and the records of re-runs."""
 
 import json
+from dataclasses import replace
 
 import pytest
 
@@ -104,6 +105,21 @@ def test_a_policy_whose_episodes_depend_on_each_other_is_not_confirmed(
     assert verification.repeats
     assert not verification.independent
     assert not verification.confirmed
+
+
+@pytest.mark.parametrize(("spoilt", "confirmed"), [(0, True), (1, True), (6, False)])
+def test_a_policy_that_knows_the_held_out_users_alone_is_not_confirmed(
+    make_entry, few_episodes, spoilt, confirmed
+):
+    entry, fresh = make_entry("a"), few_episodes(salt=SALT)
+    for split in ("unseen_preferences", "unseen_both"):
+        fresh[split] = [
+            replace(e, preference=100 + e.preference, placed=(0, 0) if i < spoilt else e.placed)
+            for i, e in enumerate(fresh[split])
+        ]
+    rerun = few_episodes()
+    about = {"salt": SALT, "by": "A. Maintainer", "sandbox": True}
+    assert compare(entry, [rerun], rerun, fresh, **about).generalises == confirmed
 
 
 def test_records_of_the_earlier_procedure_are_still_read(make_entry, found, tmp_path):
