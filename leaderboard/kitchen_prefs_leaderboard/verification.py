@@ -33,6 +33,9 @@ PROCEDURE: Literal[2] = 2
 ALIKE = 0.95  # of the episodes of a deterministic policy: other processors round otherwise
 STOCHASTIC_RUNS = 3
 SIGNIFICANT = 1.96  # standard errors, for 95 %
+# Standard errors by which Score on fresh sessions must be lower to speak against a submission: with
+# two comparisons for each of a board's rows, 1.96 would refuse one honest row in twenty.
+SUSPICIOUS = 3.0
 FIVE, TWO_HUNDRED = "unseen_preferences", "many_preferences"  # splits of so many other users
 
 Episodes = Mapping[str, Sequence[Episode]]  # of each test split
@@ -177,9 +180,9 @@ def compare(
     with others; of a policy that does not repeat itself this cannot be known, and its runs are of
     batches of one.
 
-    It generalises if on fresh sessions its Score is not lower than in the re-run by more than both
-    intervals allow, their half-widths combined as for independent means: on the sessions of the
-    training users, and on those of all others, whose fresh users are other users.
+    It generalises if on fresh sessions its Score is not lower than in the re-run by more than three
+    standard errors: on the sessions of the training users, and on those of all others, whose fresh
+    users are other users.
 
     Args:
         entry: The submission, replayed.
@@ -264,9 +267,9 @@ def _as_good_on_fresh(
     ours, theirs = _of_users(published, known), _of_users(fresh, known)
     before = mean_of_splits(ours, _given(published, scores))
     after = mean_of_splits(theirs, score)
-    errors = (before.mean - before.low, after.high - after.mean)
+    sessions = hypot(before.mean - before.low, after.high - after.mean) / SIGNIFICANT
     users = 0.0 if known else _error_of_other_users(published, fresh)
-    return before.mean - after.mean <= hypot(*errors, SIGNIFICANT * users)
+    return before.mean - after.mean <= SUSPICIOUS * hypot(sessions, users)
 
 
 def _error_of_other_users(published: Episodes, fresh: Episodes) -> float:
