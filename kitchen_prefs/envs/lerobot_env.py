@@ -54,7 +54,7 @@ class KitchenPrefsEnv(EnvConfig):
         track: "standard", "privileged" (adds the preference's label) or "language" (gives the
             preference in words as the task).
         flat: Whether a set is flat, (936,), as in the data sets. A checkpoint that was trained on
-            data of the first format and normalises its inputs needs rows, (72, 13).
+            data of the first format and normalises the set needs rows, (72, 13).
 
     Raises:
         ValueError: If the split or the track is unknown.
