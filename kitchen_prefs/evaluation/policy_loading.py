@@ -186,7 +186,8 @@ def _untrained(policy_type: str, options: Sequence[str], track: str | None) -> L
 
 def _environment(config: PreTrainedConfig, track: str | None) -> KitchenPrefsEnv:
     asked_for: str = getattr(config, "track", "standard")
-    return KitchenPrefsEnv(track=track or asked_for)
+    # With sets as rows, so that policies without a checkpoint keep the fingerprints they have had.
+    return KitchenPrefsEnv(track=track or asked_for, flat=False)
 
 
 def _check_features(config: PreTrainedConfig, environment: KitchenPrefsEnv) -> None:
