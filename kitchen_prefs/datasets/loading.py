@@ -7,7 +7,12 @@ from typing import TYPE_CHECKING
 
 from filelock import FileLock
 
-from kitchen_prefs.datasets.manifest import is_outdated, published_fingerprint, read_manifest
+from kitchen_prefs.datasets.manifest import (
+    before_edit,
+    is_outdated,
+    published_fingerprint,
+    read_manifest,
+)
 from kitchen_prefs.datasets.names import Content, content_of, dataset_root
 from kitchen_prefs.utils.files import atomic_folder
 
@@ -78,6 +83,11 @@ def make_dataset(name: str, workers: int | None = None) -> Path:
 
 def _is_missing(content: Content, root: Path) -> bool:
     if not root.exists():
+        if before_edit(root).is_dir():
+            raise ValueError(
+                f"The data set {content.name} is not in {root.parent}, but an edit in place left "
+                f"it in {before_edit(root)}; move that back, or delete it."
+            )
         return True
     if is_outdated(root):
         warnings.warn(

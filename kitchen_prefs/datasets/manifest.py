@@ -80,14 +80,19 @@ def read_manifest(name: str, root: Path) -> dict:
 
 
 def _way_out(root: Path) -> str:
-    """What to do about a data set that is not as it was written."""
-    before = root.with_name(f"{root.name}_old")  # lerobot-edit-dataset moves the data set there
+    """What to do about a data set that is missing or not as it was written."""
+    before = before_edit(root)
     if before.is_dir():
         return (
-            f"an edit in place that failed left it in {before}; delete the folder {root} and move "
+            f"an edit in place left what was there in {before}; delete the folder {root} and move "
             f"{before} back there."
         )
     return f"delete the folder {root} and ask for the data set again."
+
+
+def before_edit(root: Path) -> Path:
+    """Where lerobot-edit-dataset moves a data set before it edits it in place."""
+    return root.with_name(f"{root.name}_old")
 
 
 def is_outdated(root: Path) -> bool:

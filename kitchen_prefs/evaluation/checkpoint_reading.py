@@ -119,6 +119,8 @@ def read_policy(
     try:
         if is_adapter(folder):
             below = find_checkpoint(policy_below(folder))
+            if is_adapter(below):
+                raise ValueError(f"{below} is an adapter itself; train {folder} on a policy.")
             return read_adapted_policy(folder, below, config)
         return get_policy_class(config.type).from_pretrained(folder, config=config, strict=True)
     except SafetensorError as error:

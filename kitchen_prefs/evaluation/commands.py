@@ -113,6 +113,7 @@ def evaluate(
 def _isolated(
     path: str | None, policy_type: str | None, settings: list[str], track: str | None, out: Path
 ) -> "IsolatedPolicy":
+    from kitchen_prefs.evaluation.checkpoint_reading import find_checkpoint
     from kitchen_prefs.evaluation.isolation.isolated_policy import IsolatedPolicy
     from kitchen_prefs.evaluation.isolation.sandbox import NO_SANDBOX, has_sandbox
 
@@ -120,7 +121,7 @@ def _isolated(
         typer.echo(NO_SANDBOX, err=True)
     check_one_policy(path, policy_type)
     arguments = {
-        "path": path and str(Path(path).resolve()),
+        "path": path and str(find_checkpoint(path).resolve()),
         "policy_type": policy_type,
         "options": settings,
         "track": track,

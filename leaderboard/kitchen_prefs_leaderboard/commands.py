@@ -189,9 +189,9 @@ def verify(
     submission = read_known(folder)
     settings = policy_settings(path, policy_type, context.args, submission.description.track)
     rerunner = Rerunner(settings, out / submission.digest[:12], jobs, plugins)
-    verification.check_policy(submission.description, policy_of(rerunner.described))
-    (entry,) = replay_submissions([submission], jobs)
     with at_work_alone(rerunner.folder):
+        verification.check_policy(submission.description, policy_of(rerunner.described))
+        (entry,) = replay_submissions([submission], jobs)
         found = rerun_submission(entry, rerunner, salt, by)
     file = verification.write_verification(found, verifications)
     console.print(score_formats.to_comparison(found))

@@ -1,14 +1,17 @@
 """Committed checkpoints, trained further with LeRobot's defaults, do not forget what they know."""
 
+import json
 from itertools import islice
 from pathlib import Path
 
+import draccus
 import pytest
 import torch
 from lerobot.configs import PreTrainedConfig
 from lerobot.configs.default import DatasetConfig
 from lerobot.configs.train import TrainPipelineConfig
 from lerobot.datasets import make_dataset
+from lerobot.optim import LRSchedulerConfig, OptimizerConfig
 from lerobot.optim.factory import make_optimizer_and_scheduler
 from lerobot.policies import make_policy, make_pre_post_processors
 from lerobot.utils.import_utils import is_package_available
@@ -19,6 +22,7 @@ import kitchen_prefs.datasets
 CHECKPOINTS = sorted((Path(__file__).parents[2] / "policies/checkpoints").glob("*/config.json"))
 DATASET = "dishwasher-train-p7-d6-v1"
 STEPS, BATCH_SIZE = 30, 8  # LeRobot's default batch size
+LEROBOTS = ("act", "diffusion")
 
 
 @pytest.fixture(scope="session")
@@ -52,6 +56,21 @@ def test_default_steps_at_most_double_the_loss_on_a_fixed_batch(folder, data_roo
     before = loss_of(policy, fixed)
     train(policy, batches, training)
     assert loss_of(policy, fixed) <= 2 * before
+
+
+@pytest.mark.parametrize("folder", [file.parent for file in CHECKPOINTS], ids=lambda f: f.name)
+def test_the_preset_is_what_trained_it_at_a_tenth_of_the_learning_rate(folder):
+    if not (folder / "train_config.json").is_file() or folder.name in LEROBOTS:
+        pytest.skip("trained by PPO, or LeRobot's own preset trained it")
+    trained = json.loads((folder / "train_config.json").read_text())
+    config = PreTrainedConfig.from_pretrained(folder)
+    trained_by, preset = trained["optimizer"], draccus.encode(config.optimizer, OptimizerConfig)
+    # ttp_plus went on from ttp_quick, and its preset is ttp_quick's.
+    rate = 5e-5 if folder.name == "ttp_plus" else trained_by["lr"] / 10
+    assert preset["lr"] == pytest.approx(rate)
+    assert preset | {"lr": 0} == trained_by | {"lr": 0}
+    if trained["scheduler"]:
+        assert draccus.encode(config.scheduler, LRSchedulerConfig) == trained["scheduler"]
 
 
 def loss_of(policy, batch):

@@ -9,6 +9,7 @@ import json
 import os
 import resource
 import sys
+from contextlib import chdir
 from typing import BinaryIO
 
 from kitchen_prefs.evaluation.isolation.messages import PipeClosedError, receive, send
@@ -25,7 +26,6 @@ def main() -> None:
     """
     settings = json.loads(sys.argv[1])
     memory = settings.pop("memory")
-    os.chdir(settings.pop("folder"))
     resource.setrlimit(resource.RLIMIT_DATA, (memory, memory))
     resource.setrlimit(resource.RLIMIT_FSIZE, (MOST_FILE, MOST_FILE))
     requests, replies = os.fdopen(os.dup(0), "rb"), os.fdopen(os.dup(1), "wb")
@@ -38,7 +38,7 @@ def serve(settings: dict, requests: BinaryIO, replies: BinaryIO) -> None:
     """Load a policy and answer requests until there are no more.
 
     Args:
-        settings: The arguments of `load_policy`.
+        settings: The arguments of `load_policy`, and the folder where relative paths begin.
         requests: Messages with a seed, which begin a batch of episodes, or with observations.
         replies: What the policy is, then the actions for each batch of observations, (B, 7).
     """
@@ -46,8 +46,10 @@ def serve(settings: dict, requests: BinaryIO, replies: BinaryIO) -> None:
 
     from kitchen_prefs.evaluation.policy_loading import load_policy
 
+    folder = settings.pop("folder")
     try:
-        loaded = load_policy(**settings)
+        with chdir(folder):
+            loaded = load_policy(**settings)
     except ValueError as error:  # a sentence for whoever named the policy
         send(replies, refused=str(error))
         return

@@ -1,8 +1,9 @@
 """How the platform confines a policy's process.
 
 On Linux where users may make namespaces, the process has no network, sees no other process, can
-write to its scratch folder alone, and does not see folders that are hidden from it. Elsewhere it is
-only a process of its own, and `NO_SANDBOX` says so.
+write to its scratch folder alone, and does not see folders that are hidden from it, `/run` among
+them. It can read the rest of the disk, and open sockets that lie there. Elsewhere it is only a
+process of its own, and `NO_SANDBOX` says so.
 """
 
 import os
@@ -25,6 +26,7 @@ NAMESPACES = (
     *("unshare", "--user", "--map-root-user", "--net", "--ipc", "--uts", "--mount"),
     *("--pid", "--fork", "--kill-child", "--mount-proc"),
 )
+SERVICES = (Path("/run"),)  # their sockets are files, which a process without a network may open
 # Arguments: the scratch folder, hidden folders, --, the command. The scratch folder is in memory
 # and seen by this process alone, so that policies in several processes cannot exchange what they
 # observe. Every other mount becomes read-only; without capabilities the command cannot undo it.
@@ -60,7 +62,8 @@ def confined(command: Sequence[str], scratch: Path, hidden: Sequence[Path]) -> l
     """
     if not has_sandbox():
         return ending_with_this(command)
-    folders = [str(folder.resolve()) for folder in (scratch, *hidden)]
+    services = [folder for folder in SERVICES if folder.is_dir()]
+    folders = [str(folder.resolve()) for folder in (scratch, *hidden, *services)]
     return ending_with_this([*NAMESPACES, "sh", "-c", CONFINE, "sh", *folders, "--", *command])
 
 

@@ -41,8 +41,10 @@ def test_a_half_written_data_set_is_refused(home):
 def test_what_a_failed_edit_in_place_left_behind_is_named_with_the_way_back(home):
     root = make_dataset(SMALL)
     before = root.rename(root.with_name(f"{root.name}_old"))  # as lerobot-edit-dataset does
+    with pytest.raises(ValueError, match=f"left it in {before}; move that back, or delete it"):
+        load_dataset(SMALL)
     (root / "meta").mkdir(parents=True)
-    way_back = rf"left it in {before}; delete the folder {root} and move {before} back"
+    way_back = f"left what was there in {before}; delete the folder {root} and move {before} back"
     with pytest.raises(ValueError, match=way_back):
         load_dataset(SMALL)
     with pytest.raises(ValueError, match=way_back):
