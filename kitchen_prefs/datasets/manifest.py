@@ -68,14 +68,18 @@ def read_manifest(name: str, root: Path) -> dict:
             f"The data set {name} is of data version {manifest['data_version']}, but this "
             f"kitchen_prefs works with version {DATA_VERSION}; {way_out}"
         )
-    if manifest["format"] != FORMAT:
+    wrong = _wrong_files(manifest["files"], root)
+    if wrong:
+        raise ValueError(damaged.format(wrong[0]))
+    if manifest["format"] > FORMAT:
+        raise ValueError(
+            f"The data set {name} is of the later format {manifest['format']}; {way_out}"
+        )
+    if manifest["format"] < FORMAT:
         raise ValueError(
             f"The data set {name} is of format {manifest['format']}, but this kitchen_prefs reads "
             f"format {FORMAT}; `kitchen-prefs datasets make {name}` makes it again."
         )
-    wrong = _wrong_files(manifest["files"], root)
-    if wrong:
-        raise ValueError(damaged.format(wrong[0]))
     return manifest
 
 

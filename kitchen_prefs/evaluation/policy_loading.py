@@ -200,8 +200,9 @@ def _check_features(config: PreTrainedConfig, environment: KitchenPrefsEnv) -> N
                 f"The policy was trained on {name!r}, which the environment does not show on the "
                 f"{environment.track} track."
             )
-        # Sets have the shape (72, 13) in checkpoints of the data's first format.
-        if prod(feature.shape) != prod(observed[name].shape):
+        # A set is flat, or has the shape (72, 13) in checkpoints of the data's first format.
+        same_set = name == OBS_INSTANCES and prod(feature.shape) == prod(observed[name].shape)
+        if not same_set and tuple(feature.shape) != tuple(observed[name].shape):
             raise ValueError(
                 f"The policy was trained on {name!r} of shape {tuple(feature.shape)}; the "
                 f"environment's has {tuple(observed[name].shape)}. Train it on this data version."

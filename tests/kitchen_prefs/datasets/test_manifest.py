@@ -117,7 +117,7 @@ def test_a_damaged_data_set_of_an_earlier_format_is_kept(home):
     root = make_dataset(SMALL)
     as_format_1(root)
     (root / "meta" / "stats.json").write_text("{}")
-    with pytest.raises(ValueError, match="is of format 1"):
+    with pytest.raises(ValueError, match=r"is damaged \(meta/stats\.json .*delete the folder"):
         load_dataset(SMALL)
     assert (root / "meta" / "stats.json").read_text() == "{}"
 
