@@ -85,7 +85,7 @@ LEADERBOARD = {
         "kitchen_prefs.metrics kitchen_prefs.splits"
     ),
     "recording_reading": (
-        "kitchen_prefs.envs kitchen_prefs.instances kitchen_prefs.metrics "
+        "kitchen_prefs.datasets kitchen_prefs.envs kitchen_prefs.instances kitchen_prefs.metrics "
         "kitchen_prefs.simulation kitchen_prefs.splits"
     ),
     "policy_runs": (

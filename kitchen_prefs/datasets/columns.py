@@ -90,7 +90,7 @@ def read_columns(root: Path) -> dict[str, np.ndarray]:
     for name in (*FEATURES, *BOOKKEEPING):
         shape = FEATURES[name]["shape"] if name in FEATURES else (1,)
         shape = (CAPACITY, COLUMNS) if name == SETS else shape
-        values = _flat(table[name].combine_chunks()).to_numpy(zero_copy_only=False)
+        values = flat_numbers(table[name])
         columns[name] = values.reshape(-1, *(() if shape == (1,) else shape))
     return columns
 
@@ -123,7 +123,13 @@ def fingerprint(columns: dict[str, np.ndarray], tasks: list[str]) -> str:
     return digest.hexdigest()
 
 
-def _flat(array: pa.Array) -> pa.Array:
-    while isinstance(array, pa.ListArray | pa.FixedSizeListArray):
+def flat_numbers(column: pa.ChunkedArray) -> np.ndarray:
+    """All numbers of a column of any number of dimensions, flat."""
+    array = column.combine_chunks()
+    if isinstance(array, pa.ChunkedArray):
+        array = pa.concat_arrays(array.chunks)
+    if isinstance(array, pa.ExtensionArray):  # LeRobot's two-dimensional features
+        array = array.storage
+    while pa.types.is_nested(array.type):
         array = array.flatten()
-    return array
+    return array.to_numpy(zero_copy_only=False)

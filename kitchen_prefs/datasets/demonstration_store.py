@@ -4,9 +4,9 @@ from typing import Self
 
 import numpy as np
 import pandas as pd
-import pyarrow as pa
 from lerobot.datasets import LeRobotDataset, LeRobotDatasetMetadata
 
+from kitchen_prefs.datasets.columns import flat_numbers
 from kitchen_prefs.envs.lerobot_env import OBS_INSTANCES
 from kitchen_prefs.instances import COLUMNS, EXTENTS, IS_PLACE, POSE, PROMPT_COLUMNS, is_real
 
@@ -65,8 +65,8 @@ class DemonstrationStore:
         data = LeRobotDataset(meta.repo_id, root=meta.root, video_backend="pyav")  # has no videos
         frames = data.hf_dataset.with_format("arrow")
         table = frames.select_columns(wanted)[:]
-        chosen, preference, episode = (_numbers(table[name]) for name in wanted[1:])
-        sets = _numbers(table[OBS_INSTANCES]).reshape(len(chosen), -1, COLUMNS)  # (T, N, 13)
+        chosen, preference, episode = (flat_numbers(table[name]) for name in wanted[1:])
+        sets = flat_numbers(table[OBS_INSTANCES]).reshape(len(chosen), -1, COLUMNS)  # (T, N, 13)
         marks = np.arange(sets.shape[1]) == chosen[:, None]  # (T, N)
         kept = marks if chosen_only else is_real(sets)
         rows = np.concatenate([sets[kept], marks[kept][:, None]], axis=1, dtype=np.float32)
@@ -107,15 +107,3 @@ class DemonstrationStore:
         for prompt, filled in zip(prompts, rows, strict=True):
             prompt[: len(filled)] = filled
         return prompts
-
-
-def _numbers(column: pa.ChunkedArray) -> np.ndarray:
-    """All numbers of a column of any number of dimensions, flat."""
-    array = column.combine_chunks()
-    if isinstance(array, pa.ChunkedArray):
-        array = pa.concat_arrays(array.chunks)
-    if isinstance(array, pa.ExtensionArray):
-        array = array.storage
-    while pa.types.is_nested(array.type):
-        array = array.flatten()
-    return array.to_numpy(zero_copy_only=False)

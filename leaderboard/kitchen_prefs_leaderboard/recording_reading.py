@@ -19,6 +19,7 @@ import pyarrow.parquet as pq
 from tqdm import tqdm
 
 from kitchen_prefs import instances
+from kitchen_prefs.datasets.columns import flat_numbers
 from kitchen_prefs.envs.episode_simulator import EpisodeSimulator
 from kitchen_prefs.metrics import Episode
 from kitchen_prefs.simulation.sessions import make_session
@@ -74,23 +75,13 @@ def _recorded(recordings: Path) -> Iterator[tuple[np.ndarray, np.ndarray]]:
         try:
             table = pq.read_table(file, columns=COLUMNS)
             episodes = table["episode_index"].to_numpy()
-            sets = _values(table["instances"], len(episodes))
-            actions = _values(table["action"], len(episodes))
+            sets = flat_numbers(table["instances"]).reshape(len(episodes), -1)
+            actions = flat_numbers(table["action"]).reshape(len(episodes), -1)
         except (OSError, ValueError, KeyError, pa.ArrowException) as error:
             raise ValueError(f"{file} is no recording of this environment; {ADVICE}") from error
         for episode in np.unique(episodes):
             frames = episodes == episode
             yield sets[frames][0], actions[frames]
-
-
-def _values(column: pa.ChunkedArray, rows: int) -> np.ndarray:
-    """A column of lists as an array of float32, (rows, columns)."""
-    flat = column.combine_chunks()
-    if isinstance(flat, pa.ExtensionArray):  # a two-dimensional feature of LeRobot's
-        flat = flat.storage
-    while not pa.types.is_floating(flat.type):
-        flat = flat.flatten()
-    return flat.to_numpy(zero_copy_only=False).astype(np.float32).reshape(rows, -1)
 
 
 def _replayed(split: str, session: int, actions: np.ndarray) -> Episode:
