@@ -7,6 +7,7 @@ import zipfile
 from pathlib import Path
 
 import pytest
+from short_splits import OF_PROGRAMS
 
 pytestmark = pytest.mark.xdist_group("wheel")  # one fixture of the module serves all
 
@@ -107,7 +108,7 @@ def test_the_quickstart_runs_and_shows_no_traceback(run, installed, monkeypatch)
         .replace("save_freq: 250", "save_freq: 2")
         .replace("log_freq: 50", "log_freq: 1")
     )
-    done = run("quickstart", path=[ROOT / "tests" / "short_splits_of_programs"])
+    done = run("quickstart", path=[OF_PROGRAMS])
     recipe.write_text(text)
     assert done.returncode == 0, done.stderr
     for output in (done.stdout, done.stderr):
@@ -123,7 +124,7 @@ def test_the_quickstart_runs_and_shows_no_traceback(run, installed, monkeypatch)
 @pytest.mark.lerobot
 @pytest.mark.slow
 def test_a_checkpoint_is_found_by_name_and_a_policy_submitted(run):
-    short = {"path": [ROOT / "tests" / "short_splits_of_programs"]}
+    short = {"path": [OF_PROGRAMS]}
     checkpoint = run("checkpoints", "get", "ttp_quick").stdout.strip()
     evaluate = ("evaluate", f"--policy.path={checkpoint}", "--split=seen", "--out=seen")
     policy = ("--policy.type=rules", "--policy.rule=symbolic")

@@ -2,12 +2,11 @@
 
 import json
 import os
-import subprocess
-import sys
 
 import numpy as np
 import pyarrow.parquet as pq
 import pytest
+import warm_python
 from lerobot.datasets import LeRobotDataset, StreamingLeRobotDataset
 
 from kitchen_prefs.datasets import make_dataset
@@ -54,13 +53,8 @@ def edited(made_once):
             patch.setenv("HF_LEROBOT_HOME", str(home))
             make_dataset(NAME)
         environment = {"HF_LEROBOT_HOME": str(home), "HF_HUB_OFFLINE": "1"}
-        done = subprocess.run(
-            [sys.executable, "-c", EDIT_ALL, json.dumps(CHAIN)],
-            env=os.environ | environment | {"HF_DATASETS_CACHE": str(home / "cache")},
-            capture_output=True,
-            text=True,
-            check=False,
-        )
+        environment |= {"HF_DATASETS_CACHE": str(home / "cache")}
+        done = warm_python.run("-c", EDIT_ALL, json.dumps(CHAIN), env=os.environ | environment)
         assert done.returncode == 0, done.stderr[-3000:]
 
     return made_once("edited", fill)
