@@ -199,3 +199,13 @@ def act(decisions: int) -> Training:
     """LeRobot's ACT, which chooses several decisions at a time."""
     overrides = (f"--policy.chunk_size={decisions}", f"--policy.n_action_steps={decisions}")
     return Training(f"act-{decisions}", batch_size=64, overrides=overrides, recipe="act")
+
+
+def seeded(recipe: str, seed: int) -> Training:
+    """A recipe as it stands, with another seed than LeRobot's 1000."""
+    return Training(f"{recipe}-seed-{seed}", overrides=(f"--seed={seed}",), recipe=recipe)
+
+
+def seeds(recipe: str) -> dict[str, Policy]:
+    """Three trainings of a recipe: the committed one, and two more."""
+    return {"1000, committed": Committed(recipe)} | {str(n): seeded(recipe, n) for n in (1, 2)}
