@@ -208,4 +208,5 @@ def seeded(recipe: str, seed: int) -> Training:
 
 def seeds(recipe: str) -> dict[str, Policy]:
     """Three trainings of a recipe: the committed one, and two more."""
-    return {"1000, committed": Committed(recipe)} | {str(n): seeded(recipe, n) for n in (1, 2)}
+    further = {str(seed): seeded(recipe, seed) for seed in (1, 2)}
+    return {"1000, committed": Committed(recipe), **further}
