@@ -123,6 +123,8 @@ ROBOT = {
         "kitchen_prefs.physics kitchen_prefs.preferences kitchen_prefs.rendering "
         "kitchen_prefs.simulation kitchen_prefs.utils"
     ),
+    "perception": "scene",
+    "real_to_sim": "",
     "__init__": "",
 }
 

@@ -1,0 +1,1 @@
+"""From what the robot sees to what the policy reads."""
