@@ -119,6 +119,7 @@ LEADERBOARD = {
     "__init__": "",
 }
 ROBOT = {
+    "task": "",
     "scene": (
         "kitchen_prefs.physics kitchen_prefs.preferences kitchen_prefs.rendering "
         "kitchen_prefs.simulation kitchen_prefs.utils"

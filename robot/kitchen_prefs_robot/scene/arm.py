@@ -36,3 +36,14 @@ def arm_and_gripper() -> mujoco.MjSpec:
     for camera in list(spec.cameras):
         spec.delete(camera)  # the paper's cameras stand beside the table
     return spec
+
+
+def arm_kinematics() -> mujoco.MjSpec:
+    """The arm alone, with its seven joints and a rigid hand, for inverse kinematics."""
+    spec = arm_spec()
+    for part in (*spec.actuators, *spec.sensors, *spec.equalities, *spec.tendons):
+        spec.delete(part)
+    for joint in spec.joints:
+        if joint.name not in ARM_JOINTS:
+            spec.delete(joint)
+    return spec
