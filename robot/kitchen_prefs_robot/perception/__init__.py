@@ -12,6 +12,9 @@ clusters        objects as clusters of points, and the boxes round them
 categories      categories by median colour
 detection       all of it: a cloud in, dishes and openings out
 known_dishes    the colours of the dishes, measured beforehand
+trials          how well it does on random scenes
+pictures        what was found, tinted in a camera's picture
+commands        `kitchen-prefs robot perception`
 """
 
 from kitchen_prefs_robot.perception.cameras import Cameras, calibrate, laboratory_poses
@@ -19,7 +22,7 @@ from kitchen_prefs_robot.perception.categories import KnownDish
 from kitchen_prefs_robot.perception.cloud import Cloud, Frame
 from kitchen_prefs_robot.perception.detection import Detection, Sight, perceive
 from kitchen_prefs_robot.perception.known_dishes import known_dishes
-from kitchen_prefs_robot.perception.regions import HAND
+from kitchen_prefs_robot.perception.regions import HAND, open_drawer
 
 __all__ = [
     "HAND",
@@ -32,5 +35,6 @@ __all__ = [
     "calibrate",
     "known_dishes",
     "laboratory_poses",
+    "open_drawer",
     "perceive",
 ]

@@ -23,11 +23,6 @@ class KnownDish:
     colour: tuple[float, float, float]
     extents: tuple[float, float, float]
 
-    @property
-    def diagonal(self) -> float:
-        """Of its footprint, m."""
-        return float(np.hypot(*self.extents[:2]))
-
 
 def nearest_by_colour(colour: np.ndarray, known: Sequence[KnownDish]) -> KnownDish | None:
     """The known dish whose colour is nearest, or None if none is near.

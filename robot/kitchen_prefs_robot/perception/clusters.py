@@ -56,16 +56,15 @@ def find_clusters(cloud: Cloud, largest: float) -> list[Cloud]:
 
     Args:
         cloud: Points above the table, in the base's frame.
-        largest: The diagonal of the largest dish's footprint, m; a larger cluster is several
-            dishes that touch.
+        largest: The length of the largest dish, m; a longer cluster is several dishes that touch.
 
     Returns:
         The clusters, the largest first.
     """
     clusters = []
     for cluster in _close_together(cloud, cloud.points):
-        length, width, _ = box_round(cluster.points).extents
-        clusters += [cluster] if np.hypot(length, width) <= largest else _by_colour(cluster)
+        length = box_round(cluster.points).extents[0]
+        clusters += [cluster] if length <= largest else _by_colour(cluster)
     return sorted(clusters, key=len, reverse=True)
 
 

@@ -7,15 +7,17 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from kitchen_prefs_robot.perception.categories import KnownDish, nearest_by_colour
 from kitchen_prefs_robot.perception.cloud import Cloud, joined
 from kitchen_prefs_robot.perception.clusters import Box, box_round, find_clusters
 from kitchen_prefs_robot.perception.plane import Plane
-from kitchen_prefs_robot.perception.regions import OPEN_FROM, Place, cut_regions
+from kitchen_prefs_robot.perception.regions import Place, cut_regions, open_drawer
 
 STANDING = 0.03  # m: what reaches down to that height stands on the table
 FITS = 1.15  # times a known dish's size: fragments that are no larger together are one dish
+BESIDE = 0.010  # m: a point so near to a dish is its own
 TOO_LARGE = 1.4  # times a known dish's size: several dishes that touch
 
 
@@ -47,24 +49,53 @@ class Detection:
 
 
 @dataclass(frozen=True)
+class Touching:
+    """A cluster that is larger than any dish: dishes that touch, and no colour tells them apart.
+
+    Attributes:
+        place: Where they are.
+        box: Round all of them.
+    """
+
+    place: Place
+    box: Box
+
+    @property
+    def sentence(self) -> str:
+        """What to do about it."""
+        length, width, _ = 100 * self.box.extents
+        where = "on the counter" if self.place == "counter" else f"({self.place})"
+        return (
+            f"What stands {where} on {length:.0f} x {width:.0f} cm is larger than any dish: dishes "
+            "touch, and their colours do not tell them apart; move them apart."
+        )
+
+
+@dataclass(frozen=True)
 class Sight:
     """What one look says.
 
     Attributes:
         dishes: The dishes, by place, those with most points first.
         openings: How far each drawer is open, m.
-        problems: What could not be told apart, a sentence each.
+        touching: What could not be told apart.
+        obstacles: All points above the table and in open drawers, stands included, (N, 3) m.
     """
 
     dishes: tuple[Detection, ...]
     openings: dict[str, float]
-    problems: tuple[str, ...]
+    touching: tuple[Touching, ...]
+    obstacles: np.ndarray
 
     @property
     def opened(self) -> str | None:
-        """The drawer that is open, the more open one of two; None if both are closed."""
-        drawer = max(self.openings, key=self.openings.__getitem__)
-        return drawer if self.openings[drawer] >= OPEN_FROM else None
+        """The drawer that is open; None if both are closed."""
+        return open_drawer(self.openings)
+
+    def obstacles_beside(self, dish: Detection) -> np.ndarray:
+        """The points of all else, which a grasp of a dish must not touch, (N, 3) m."""
+        distances = cKDTree(dish.cloud.points).query(self.obstacles)[0]
+        return self.obstacles[distances > BESIDE]
 
 
 def perceive(cloud: Cloud, known: Sequence[KnownDish], seed: int = 0) -> Sight:
@@ -79,22 +110,18 @@ def perceive(cloud: Cloud, known: Sequence[KnownDish], seed: int = 0) -> Sight:
         ValueError: If the cameras see no table, or not the front of a drawer.
     """
     regions = cut_regions(cloud, np.random.default_rng(seed))
-    largest = max(dish.diagonal for dish in known)
+    largest = max(max(dish.extents) for dish in known)
     found: list[Detection] = []
-    problems: list[str] = []
+    touching: list[Touching] = []
     for place, region in regions.clouds.items():
         for cluster in join_fragments(find_clusters(region, FITS * largest), known):
             dish = nearest_by_colour(median_colour(cluster), known)
             box = _box(cluster, regions.table)
             if _is_too_large(box, known):
-                length, width, _ = 100 * box.extents
-                problems.append(
-                    f"A cluster of {length:.0f} x {width:.0f} cm ({place}) is larger than any "
-                    "dish: dishes touch, and their colours do not tell them apart; move them apart."
-                )
+                touching.append(Touching(place, box))
             else:
                 found.append(Detection(dish.category if dish else None, place, cluster, box))
-    return Sight(tuple(found), regions.openings, tuple(problems))
+    return Sight(tuple(found), regions.openings, tuple(touching), regions.obstacles.points)
 
 
 def median_colour(cloud: Cloud) -> np.ndarray:
@@ -127,7 +154,7 @@ def _is_one_dish(both: Cloud, parts: tuple[Cloud, Cloud], known: Sequence[KnownD
 
 def _fits(box: Box, dish: KnownDish, size: float) -> bool:
     """Whether a box is no larger than a dish that is enlarged by `size`."""
-    return bool((box.extents <= size * np.sort(dish.extents)[::-1].max()).all())
+    return bool((box.extents <= size * max(dish.extents)).all())
 
 
 def _is_too_large(box: Box, known: Sequence[KnownDish]) -> bool:
