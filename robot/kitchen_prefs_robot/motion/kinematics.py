@@ -7,16 +7,16 @@ hand, y from one fingertip to the other. A pose is a (4, 4) matrix in the frame 
 from functools import cache
 
 import mink
-import mujoco
 import numpy as np
 
-from kitchen_prefs_robot.scene.arm import ARM_JOINTS, HOME, PINCH, arm_kinematics
+from kitchen_prefs_robot.scene.arm import HOME, PINCH, arm_kinematics
 
 TOLERANCE = (0.001, 0.01)  # m and radians by which a solution may miss its pose
 ITERATIONS = 60  # of one start; a reachable pose needs ten
 FOLLOWING = 8  # iterations from one pose of a line to the next, a centimetre away
 # Radians that turn the first and the last joint of a start: the hand has two sides.
 STARTS = ((0.0, 0.0), (0.0, np.pi / 2), (0.0, -np.pi / 2), (0.5, 0.0), (-0.5, 0.0))
+SAME = 0.1  # radians between solutions that are one
 MARGIN = 0.03  # radians from the joints' limits
 JUMP = 0.5  # radians that no joint moves from one pose of a line to the next
 
@@ -39,7 +39,7 @@ class Kinematics:
         self._configuration.update(np.asarray(joints, dtype=float))
         return self._configuration.get_transform_frame_to_world(PINCH, "site").as_matrix()
 
-    def reach(self, pose: np.ndarray, near: np.ndarray) -> np.ndarray | None:
+    def reach(self, pose: np.ndarray, near: np.ndarray) -> list[np.ndarray]:
         """Joints that put the hand at a pose.
 
         Args:
@@ -47,11 +47,14 @@ class Kinematics:
             near: The joints from which the arm will move there, (7,).
 
         Returns:
-            The solution closest to `near`, (7,), or None where the arm cannot reach.
+            The solutions found, (7,) each, the closest to `near` first; none out of reach.
         """
-        found = [self._solve(pose, start, ITERATIONS) for start in _starts(pose, near)]
-        solutions = [joints for joints in found if joints is not None]
-        return min(solutions, key=lambda joints: np.abs(joints - near).max(), default=None)
+        found: list[np.ndarray] = []
+        for start in _starts(pose, near):
+            joints = self._solve(pose, start, ITERATIONS)
+            if joints is not None and not any(np.allclose(joints, f, atol=SAME) for f in found):
+                found.append(joints)
+        return sorted(found, key=lambda joints: float(np.abs(joints - near).max()))
 
     def line(self, poses: np.ndarray, start: np.ndarray) -> np.ndarray | None:
         """Joints that lead the hand through poses that lie close to one another.

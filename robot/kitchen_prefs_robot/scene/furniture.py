@@ -87,7 +87,7 @@ def _add_boards(cabinet: mujoco.MjsBody) -> None:
         ((-depth, half - board, 0.0), (0.0, half, height)),
         ((-depth, -inner, 0.0), (-depth + board, inner, height)),
         ((board - depth, -inner, height - board), (0.0, inner, height)),
-        ((board - depth, -inner, 0.0), (0.0, inner, 0.03)),
+        ((board - depth, -inner, 0.0), (0.0, inner, 0.02)),
         ((board - depth, -inner, shelf - board), (-0.02, inner, shelf)),
     ):
         _add_box(cabinet, "cabinet", low, high)
