@@ -37,9 +37,9 @@ CORNERS = np.concatenate([_OPEN_CORNERS, _CLOSED_TIPS])  # (50, 3)
 
 def struck(points: np.ndarray) -> int:
     """How many points, (N, 3) in the hand's frame, the open hand would strike."""
-    above = points[:, None] > BOXES[:, 0]
-    below = points[:, None] < BOXES[:, 1]
-    return int((above & below).all(axis=2).any(axis=1).sum())
+    local = points[:, None]
+    inside = ((local > BOXES[:, 0]) & (local < BOXES[:, 1])).all(axis=2)
+    return int(np.any(inside, axis=1).sum())
 
 
 def lowest(pose: np.ndarray) -> float:
