@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import islice
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -103,7 +104,7 @@ def _plans(
     hand = kinematics().pose(start)
     for side in SIDES * turn:
         over, inside = (_hand_over(hand, held, floor, side, up) for up in (HOVER, release))
-        for joints in kinematics().reach(over, start)[:2]:
+        for joints in islice(kinematics().reach(over, start), 2):
             down = line_path(joints, inside)
             up = None if down is None else line_path(down[-1], over)
             if down is not None and up is not None:

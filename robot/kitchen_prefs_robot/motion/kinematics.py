@@ -4,6 +4,7 @@ The hand's frame is the gripper's pinch: its origin lies between the fingertips,
 hand, y from one fingertip to the other. A pose is a (4, 4) matrix in the frame of the base.
 """
 
+from collections.abc import Iterator
 from functools import cache
 
 import mink
@@ -39,22 +40,23 @@ class Kinematics:
         self._configuration.update(np.asarray(joints, dtype=float))
         return self._configuration.get_transform_frame_to_world(PINCH, "site").as_matrix()
 
-    def reach(self, pose: np.ndarray, near: np.ndarray) -> list[np.ndarray]:
-        """Joints that put the hand at a pose.
+    def reach(self, pose: np.ndarray, near: np.ndarray) -> Iterator[np.ndarray]:
+        """Search for joints that put the hand at a pose.
 
         Args:
             pose: Of the hand, (4, 4).
             near: The joints from which the arm will move there, (7,).
 
-        Returns:
-            The solutions found, (7,) each, the closest to `near` first; none out of reach.
+        Yields:
+            Solutions that differ, (7,) each, those with the smallest moves first as a rule; none
+            out of reach.
         """
         found: list[np.ndarray] = []
         for start in _starts(pose, near):
             joints = self._solve(pose, start, ITERATIONS)
             if joints is not None and not any(np.allclose(joints, f, atol=SAME) for f in found):
                 found.append(joints)
-        return sorted(found, key=lambda joints: float(np.abs(joints - near).max()))
+                yield joints
 
     def line(self, poses: np.ndarray, start: np.ndarray) -> np.ndarray | None:
         """Joints that lead the hand through poses that lie close to one another.
@@ -103,14 +105,14 @@ def kinematics() -> Kinematics:
 
 
 def _starts(pose: np.ndarray, near: np.ndarray) -> list[np.ndarray]:
-    """Where the search begins: here, and at home with the arm turned towards the pose."""
+    """Where the search begins: at home with the arm turned towards the pose, and here."""
     azimuth = np.arctan2(pose[1, 3], pose[0, 3])
-    starts = [np.asarray(near, dtype=float)]
+    starts = []
     for first, last in STARTS:
         start = np.array(HOME)
         start[0], start[6] = azimuth + first, start[6] + last
         starts.append(start)
-    return starts
+    return [starts[0], np.asarray(near, dtype=float), *starts[1:]]
 
 
 def hand_pose(position: np.ndarray, approach: np.ndarray, closing: np.ndarray) -> np.ndarray:

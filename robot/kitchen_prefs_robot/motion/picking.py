@@ -98,7 +98,7 @@ def _plans(start: np.ndarray, grasp: Grasp) -> Iterator[_Plan]:
     for pose in (grasp.pose, turned_over(grasp.pose)):
         pre_grasp = pose.copy()
         pre_grasp[:3, 3] -= PRE_GRASP * pose[:3, 2]
-        for ready in kinematics().reach(pre_grasp, home)[:1]:
+        for ready in islice(kinematics().reach(pre_grasp, home), 1):
             approach = line_path(ready, pose)
             lift = None if approach is None else line_path(approach[-1], *_lifted(pose))
             if approach is not None and lift is not None:

@@ -12,7 +12,7 @@ from kitchen_prefs_robot.scene.layout import COUNTER_X, COUNTER_Y
 from kitchen_prefs_robot.scene.tableware import SCALES, SIDES, real_extents
 
 COUNT = 1500  # points on the whole surface of a dish
-WIDTH, HEIGHT = 640, 480  # pixels of the pictures
+WIDTH, HEIGHT = 320, 240  # pixels of the pictures: one is 4 mm wide on the table
 VOXEL = 0.004  # m: one point is kept in each cube of that side
 NOISE = 0.0025  # m, standard deviation of each coordinate of each point
 OFFSET = 0.004  # m, standard deviation of each coordinate of all points at once
@@ -77,7 +77,7 @@ def _surface_points(world: World, number: int, rng: np.random.Generator) -> np.n
 
 def _camera_points(world: World, pictures: Pictures, camera: str) -> np.ndarray:
     """Where a camera's rays end, (H * W, 3) m in the base's frame."""
-    _, depth = pictures.colour_and_depth(camera)
+    depth = pictures.depth(camera)
     rows, columns = np.mgrid[:HEIGHT, :WIDTH]
     pixels = np.stack([columns, rows, np.ones_like(rows)], axis=-1).reshape(-1, 3)
     rays = pixels @ np.linalg.inv(world.intrinsics(WIDTH, HEIGHT)).T
