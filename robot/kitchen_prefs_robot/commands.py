@@ -13,10 +13,14 @@ from rich.table import Table
 from tqdm import tqdm
 
 from kitchen_prefs.metrics import wilson
+from kitchen_prefs_robot.demonstrations.commands import demonstrate
+from kitchen_prefs_robot.perception.commands import perception
 
 app = typer.Typer(
     name="robot", help="A simulated arm that loads two drawers.", no_args_is_help=True
 )
+app.command()(perception)
+app.command()(demonstrate)
 console = Console()
 
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from kitchen_prefs_robot.perception import Detection, Sight
+from kitchen_prefs_robot.perception.detection import Detection, Sight
 from kitchen_prefs_robot.task.decisions import Decision, Pick, Place, Toggle
 
 STAYED = 0.05  # m between two looks: perception errs by less, and dishes stand farther apart

@@ -3,8 +3,8 @@
 import numpy as np
 
 from kitchen_prefs.simulation.layout import COUNTER_HEIGHT
-from kitchen_prefs_robot.perception import HAND
-from kitchen_prefs_robot.real_to_sim import in_drawer, measure_work_areas
+from kitchen_prefs_robot.perception.regions import HAND
+from kitchen_prefs_robot.real_to_sim import measure_work_areas
 from kitchen_prefs_robot.scene import World
 from kitchen_prefs_robot.scene.layout import (
     CABINET_ROTATION,
@@ -16,13 +16,13 @@ from kitchen_prefs_robot.scene.tableware import real_extents
 from kitchen_prefs_robot.task.decisions import Decision, Pick, Place, Toggle
 from kitchen_prefs_robot.task.expert import choose
 from kitchen_prefs_robot.task.preferences import DrawerPreference
+from kitchen_prefs_robot.task.rows import UPRIGHT, placed
 from kitchen_prefs_robot.task.state import DrawersState, SeenDish
 
 # m from the cabinet's front and to its left where the next dish of an open drawer is put: front
 # right, back left, front left, back right.
-SLOTS = ((0.22, -0.09), (0.08, 0.09), (0.22, 0.09), (0.08, -0.09))
+SLOTS = ((0.19, -0.09), (0.07, 0.09), (0.19, 0.09), (0.07, -0.09))
 DROP_HEIGHT = 0.01  # m over the drawer's floor
-UPRIGHT = (1.0, 0.0, 0.0, 0.0)
 SETTLING = 0.5  # s of simulated time until a dropped dish lies still
 
 
@@ -62,7 +62,7 @@ class Person:
         """A dish where it truly is."""
         category, drawer = self._world.scene.dishes[number].category, self._drawers.get(number)
         if drawer is not None:
-            return in_drawer(category, drawer)
+            return placed(category, drawer)
         x, y = self._counter.to_kitchen(self._world.dish_pose(number)[0][:2])
         return SeenDish(category, (float(x), float(y), COUNTER_HEIGHT), UPRIGHT, None)
 

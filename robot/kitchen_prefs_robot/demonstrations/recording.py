@@ -8,13 +8,9 @@ import numpy as np
 from kitchen_prefs_robot.demonstrations.decisions import decision_between
 from kitchen_prefs_robot.demonstrations.person import Person
 from kitchen_prefs_robot.demonstrations.preferences import human_preference
-from kitchen_prefs_robot.perception import (
-    Cameras,
-    Sight,
-    known_dishes,
-    laboratory_poses,
-    perceive,
-)
+from kitchen_prefs_robot.perception.cameras import Cameras, laboratory_poses
+from kitchen_prefs_robot.perception.detection import Sight, perceive
+from kitchen_prefs_robot.perception.known_dishes import known_dishes
 from kitchen_prefs_robot.real_to_sim import measure_work_areas, to_drawers_state
 from kitchen_prefs_robot.scene import World, sample_scene
 from kitchen_prefs_robot.scene.tableware import Colours

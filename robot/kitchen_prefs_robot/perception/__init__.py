@@ -16,25 +16,3 @@ trials          how well it does on random scenes
 pictures        what was found, tinted in a camera's picture
 commands        `kitchen-prefs robot perception`
 """
-
-from kitchen_prefs_robot.perception.cameras import Cameras, calibrate, laboratory_poses
-from kitchen_prefs_robot.perception.categories import KnownDish
-from kitchen_prefs_robot.perception.cloud import Cloud, Frame
-from kitchen_prefs_robot.perception.detection import Detection, Sight, perceive
-from kitchen_prefs_robot.perception.known_dishes import known_dishes
-from kitchen_prefs_robot.perception.regions import HAND, open_drawer
-
-__all__ = [
-    "HAND",
-    "Cameras",
-    "Cloud",
-    "Detection",
-    "Frame",
-    "KnownDish",
-    "Sight",
-    "calibrate",
-    "known_dishes",
-    "laboratory_poses",
-    "open_drawer",
-    "perceive",
-]

@@ -4,7 +4,7 @@ work_areas  the counter and both drawers: measured corners, and the maps fitted 
 conversion  a look as the state of the task
 """
 
-from kitchen_prefs_robot.real_to_sim.conversion import in_drawer, to_drawers_state
+from kitchen_prefs_robot.real_to_sim.conversion import to_drawers_state
 from kitchen_prefs_robot.real_to_sim.work_areas import WorkArea, measure_work_areas
 
-__all__ = ["WorkArea", "in_drawer", "measure_work_areas", "to_drawers_state"]
+__all__ = ["WorkArea", "measure_work_areas", "to_drawers_state"]

@@ -5,10 +5,11 @@ from collections.abc import Iterable, Mapping
 import numpy as np
 
 from kitchen_prefs.simulation.layout import COUNTER_HEIGHT, EXTENTS
-from kitchen_prefs_robot.perception import Detection, open_drawer
+from kitchen_prefs_robot.perception.detection import Detection
+from kitchen_prefs_robot.perception.regions import open_drawer
 from kitchen_prefs_robot.real_to_sim.work_areas import WorkArea
-from kitchen_prefs_robot.task.rows import DROP_POSE
-from kitchen_prefs_robot.task.state import DrawersState, SeenDish
+from kitchen_prefs_robot.task.rows import placed
+from kitchen_prefs_robot.task.state import DRAWERS, DrawersState, SeenDish
 
 
 def to_drawers_state(
@@ -45,16 +46,10 @@ def nearest_category(found: Detection) -> str:
     return min(EXTENTS, key=lambda name: float(np.linalg.norm(np.sort(EXTENTS[name]) - size)))
 
 
-def in_drawer(category: str, drawer: str) -> SeenDish:
-    """A dish that has been put into a drawer: wherever it lies, it counts as at the drop pose."""
-    x, y, z, w, i, j, k = DROP_POSE[drawer]
-    return SeenDish(category, (x, y, z), (w, i, j, k), drawer)
-
-
 def _seen(found: Detection, counter: WorkArea) -> SeenDish:
     category = nearest_category(found)
-    if found.place in DROP_POSE:
-        return in_drawer(category, found.place)
+    if found.place in DRAWERS:
+        return placed(category, found.place)
     x, y = counter.to_kitchen(found.box.middle[:2])
     z = COUNTER_HEIGHT + EXTENTS[category][2] / 2
     half = (found.box.yaw + counter.yaw) / 2

@@ -7,8 +7,9 @@ pytest.importorskip("sklearn", reason="needs the extra `robot`")
 
 from kitchen_prefs_robot.demonstrations.decisions import decision_between
 from kitchen_prefs_robot.demonstrations.preferences import HUMAN_PREFERENCES, human_preference
-from kitchen_prefs_robot.perception import Cloud, Detection, Sight
+from kitchen_prefs_robot.perception.cloud import Cloud
 from kitchen_prefs_robot.perception.clusters import box_round
+from kitchen_prefs_robot.perception.detection import Detection, Sight
 from kitchen_prefs_robot.task.decisions import Pick, Place, Toggle
 
 

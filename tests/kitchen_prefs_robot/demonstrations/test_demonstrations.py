@@ -25,7 +25,7 @@ from kitchen_prefs_robot.scene.layout import (
     DRAWER_FLOOR,
     DRAWER_INNER,
 )
-from kitchen_prefs_robot.task.rows import DROP_POSE
+from kitchen_prefs_robot.task.rows import drop_position
 
 pytestmark = [pytest.mark.xdist_group("robot demonstration"), pytest.mark.slow]
 
@@ -70,7 +70,7 @@ def test_placed_dishes_were_placed_at_the_drop_pose(shown):
         rows[c] for rows, c in zip(shown.sets, shown.chosen, strict=True) if rows[c, IS_PLACE]
     ]
     assert [tuple(row[POSITION]) for row in placed] == [
-        pytest.approx(DROP_POSE[drawer][:3]) for drawer in ("upper", "upper", "lower", "lower")
+        pytest.approx(drop_position(drawer)) for drawer in ("upper", "upper", "lower", "lower")
     ]
 
 

@@ -6,15 +6,12 @@ import pytest
 pytest.importorskip("gym_hil", reason="needs the extra `robot`")
 
 from kitchen_prefs.rendering.opengl import NoOpenGLError
-from kitchen_prefs_robot.perception import (
-    HAND,
-    Cameras,
-    known_dishes,
-    laboratory_poses,
-    perceive,
-)
 from kitchen_prefs_robot.perception.calibration import pose_error
+from kitchen_prefs_robot.perception.cameras import Cameras, laboratory_poses
+from kitchen_prefs_robot.perception.detection import perceive
+from kitchen_prefs_robot.perception.known_dishes import known_dishes
 from kitchen_prefs_robot.perception.pictures import beside_clusters
+from kitchen_prefs_robot.perception.regions import HAND
 from kitchen_prefs_robot.perception.trials import confusion, run_trial
 from kitchen_prefs_robot.scene import PAPER_DISHES, World, sample_scene
 from kitchen_prefs_robot.scene.layout import DRAWER_FLOOR, from_cabinet

@@ -4,11 +4,12 @@ import pytest
 pytest.importorskip("sklearn", reason="needs the extra `robot`")
 
 from kitchen_prefs.simulation import layout
-from kitchen_prefs_robot.perception import Cloud, Detection
+from kitchen_prefs_robot.perception.cloud import Cloud
 from kitchen_prefs_robot.perception.clusters import box_round
+from kitchen_prefs_robot.perception.detection import Detection
 from kitchen_prefs_robot.real_to_sim import measure_work_areas, to_drawers_state
 from kitchen_prefs_robot.scene.layout import COUNTER_X, COUNTER_Y
-from kitchen_prefs_robot.task.rows import DROP_POSE
+from kitchen_prefs_robot.task.rows import UPRIGHT, drop_position
 
 AREAS = measure_work_areas(noise=0.0)
 CLOSED = {"upper": 0.0, "lower": 0.001}
@@ -48,7 +49,7 @@ def test_the_counters_corners_are_the_kitchens(x, y):
 def test_a_dish_in_a_drawer_has_the_drop_pose():
     state = to_drawers_state([seen("cup", "lower")], {"upper": 0.0, "lower": 0.3}, AREAS)
     (dish,) = state.dishes
-    assert (*dish.position, *dish.quaternion) == DROP_POSE["lower"]
+    assert (dish.position, dish.quaternion) == (drop_position("lower"), UPRIGHT)
     assert (dish.drawer, state.opened) == ("lower", "lower")
 
 
