@@ -12,6 +12,7 @@ PACKAGES = {
     "lerobot_policy_kitchen_prefs": ROOT / "policies/lerobot_policy_kitchen_prefs",
     "kitchen_prefs_experiments": ROOT / "policies/kitchen_prefs_experiments",
     "kitchen_prefs_leaderboard": ROOT / "leaderboard/kitchen_prefs_leaderboard",
+    "kitchen_prefs_robot": ROOT / "robot/kitchen_prefs_robot",
 }
 
 # The benchmark, from the bottom up. The nouns that all share are modules, the rooms are folders.
@@ -117,6 +118,20 @@ LEADERBOARD = {
     ),
     "__init__": "",
 }
+ROBOT = {
+    "task": "",
+    "scene": (
+        "kitchen_prefs.physics kitchen_prefs.preferences kitchen_prefs.rendering "
+        "kitchen_prefs.simulation kitchen_prefs.utils"
+    ),
+    "perception": "scene kitchen_prefs.utils",
+    "real_to_sim": "perception scene task kitchen_prefs.simulation",
+    "demonstrations": (
+        "perception real_to_sim scene task kitchen_prefs.datasets kitchen_prefs.instances "
+        "kitchen_prefs.simulation kitchen_prefs.utils"
+    ),
+    "__init__": "",
+}
 
 
 def graph(package, arrows):
@@ -133,6 +148,7 @@ ALLOWED = (
     | graph("lerobot_policy_kitchen_prefs", POLICIES)
     | graph("kitchen_prefs_experiments", EXPERIMENTS)
     | graph("kitchen_prefs_leaderboard", LEADERBOARD)
+    | graph("kitchen_prefs_robot", ROBOT)
 )
 
 
@@ -205,13 +221,21 @@ def test_no_modules_import_each_other():
     assert len(list(TopologicalSorter(own).static_order())) == len(MODULES)
 
 
+MUJOCO = ("kitchen_prefs.physics", "kitchen_prefs.rendering", "kitchen_prefs_robot")
+
+
 @pytest.mark.parametrize("module", MODULES)
-def test_only_physics_and_rendering_know_mujoco(module):
-    if room_of(module) not in ("kitchen_prefs.physics", "kitchen_prefs.rendering"):
+def test_only_physics_rendering_and_the_robot_know_mujoco(module):
+    if not module.startswith(MUJOCO):
         assert "mujoco" not in {name.split(".")[0] for name in imported_names(module)}
 
 
 LEROBOT = ("kitchen_prefs.envs.lerobot_env", "kitchen_prefs.evaluation", "kitchen_prefs.datasets")
+
+
+def test_nothing_but_the_robot_imports_it():
+    ends = {target for room, target in ARROWS if not room.startswith("kitchen_prefs_robot")}
+    assert not {room for room in ends if room.startswith("kitchen_prefs_robot")}
 
 
 @pytest.mark.parametrize("module", [name for name in MODULES if name.startswith("kitchen_prefs.")])

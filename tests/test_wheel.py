@@ -17,6 +17,7 @@ PACKAGES = {
     "lerobot_policy_kitchen_prefs",
     "kitchen_prefs_experiments",
     "kitchen_prefs_leaderboard",
+    "kitchen_prefs_robot",
 }
 MOST_BYTES = 40e6
 

@@ -10,7 +10,7 @@ import os
 import signal
 import sys
 import threading
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -39,7 +39,7 @@ from kitchen_prefs.datasets.columns import (
 )
 from kitchen_prefs.datasets.manifest import write_manifest
 from kitchen_prefs.datasets.names import Content
-from kitchen_prefs.envs.demonstrations import demonstrate
+from kitchen_prefs.envs.demonstrations import Demonstration, demonstrate
 from kitchen_prefs.simulation.sessions import make_session
 
 ALL_FEATURES = {**FEATURES, **DEFAULT_FEATURES}
@@ -75,17 +75,32 @@ def write_dataset(content: Content, root: Path, workers: int | None = None) -> N
     Raises:
         OSError: If the files cannot be written.
     """
+    with _demonstrated(content, workers) as episodes:
+        write_episodes(content.name, episodes, len(content.sessions), root)
+    manifest = write_manifest(content.name, root)
+    (root / "README.md").write_text(card(content, card_facts(manifest, root)))
+
+
+def write_episodes(name: str, episodes: Iterable[EpisodeFrames], count: int, root: Path) -> None:
+    """Write the data and the metadata of a data set, without manifest and card.
+
+    Args:
+        name: The data set's name, which the progress bar shows.
+        episodes: Its episodes in order.
+        count: How many there are.
+        root: Its folder, which is empty or does not exist yet.
+
+    Raises:
+        OSError: If the files cannot be written.
+    """
     data = root / DEFAULT_DATA_PATH.format(**FIRST_FILE)
     data.parent.mkdir(parents=True)
     schema = get_hf_features_from_features(ALL_FEATURES).arrow_schema
     tasks: dict[str, int] = {}
     stats: list[Stats] = []
     rows: list[dict] = []
-    with (
-        _demonstrated(content, workers) as episodes,
-        pq.ParquetWriter(data, schema, compression="snappy") as file,
-    ):
-        for episode in tqdm(episodes, content.name, len(content.sessions), unit="episode"):
+    with pq.ParquetWriter(data, schema, compression="snappy") as file:
+        for episode in tqdm(episodes, name, count, unit="episode"):
             start = rows[-1]["dataset_to_index"] if rows else 0
             task_index = tasks.setdefault(episode.task, len(tasks))
             bookkeeping = _bookkeeping(len(rows), start, len(episode.columns["action"]), task_index)
@@ -94,8 +109,13 @@ def write_dataset(content: Content, root: Path, workers: int | None = None) -> N
             table = _table(episode.columns | bookkeeping, schema)
             file.write_table(table)  # one row group an episode, as LeRobot has it
     _write_meta(root, tasks, stats, rows)
-    manifest = write_manifest(content.name, root)
-    (root / "README.md").write_text(card(content, card_facts(manifest, root)))
+
+
+def frames_of(demonstration: Demonstration) -> EpisodeFrames:
+    """The frames of a demonstration with their statistics."""
+    columns = columns_of(demonstration)
+    stats = compute_episode_stats(with_statistics(columns), ALL_FEATURES)
+    return EpisodeFrames(columns, demonstration.task, stats)
 
 
 @contextmanager
@@ -126,10 +146,7 @@ def _leave_with_parent() -> None:
 
 
 def _demonstrate(session: tuple[str, int]) -> EpisodeFrames:
-    demonstration = demonstrate(make_session(*session))
-    columns = columns_of(demonstration)
-    stats = compute_episode_stats(with_statistics(columns), ALL_FEATURES)
-    return EpisodeFrames(columns, demonstration.task, stats)
+    return frames_of(demonstrate(make_session(*session)))
 
 
 def _bookkeeping(number: int, start: int, frames: int, task_index: int) -> dict[str, np.ndarray]:

@@ -1,0 +1,137 @@
+"""Pick a dish: choose a grasp, come from above, approach on a straight line, close, lift."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import islice
+
+import numpy as np
+
+from kitchen_prefs_robot.motion.grasps import Grasp, propose_grasps
+from kitchen_prefs_robot.motion.kinematics import kinematics, turned_over
+from kitchen_prefs_robot.motion.moves import Arm, OnFrame, joint_path, line_path
+from kitchen_prefs_robot.motion.obstacles import Obstacles
+from kitchen_prefs_robot.motion.outcomes import Outcome, Result
+from kitchen_prefs_robot.scene import World
+from kitchen_prefs_robot.scene.arm import HOME
+
+MOST_CONFIDENT = 5  # reachable grasps, of which the most top-down is taken (the paper's choice)
+TRIED = 60  # grasps whose path is planned at most
+PRE_GRASP = 0.10  # m back along the approach
+LIFT = 0.12  # m straight up, until nothing on the table is in the way
+CARRY = (0.45, 0.52)  # m from the base's axis and above the table, where a pick ends
+MOST_HELD = 100  # points that stand for what the hand holds
+EMPTY = 0.0022  # m between the fingertips: less than the thinnest dish's wall
+
+
+@dataclass(frozen=True)
+class PickOutcome(Outcome):
+    """The end of a pick.
+
+    Attributes:
+        held: Points of the object in the hand's frame, (K, 3) m; none where nothing is held.
+    """
+
+    held: np.ndarray
+
+
+@dataclass(frozen=True)
+class _Plan:
+    """A grasp with the joints' paths to it and away from it."""
+
+    grasp: Grasp
+    before: np.ndarray
+    approach: np.ndarray
+    lift: np.ndarray
+
+    @property
+    def path(self) -> np.ndarray:
+        """All of it."""
+        return np.concatenate([self.before, self.approach, self.lift])
+
+
+def pick(
+    world: World, points: np.ndarray, others_points: np.ndarray, on_frame: OnFrame | None = None
+) -> PickOutcome:
+    """Pick the object that some points belong to.
+
+    Args:
+        world: In which the arm moves; its hand is empty.
+        points: Of the object as it was seen, (N, 3) m in the base's frame.
+        others_points: Of all else above the table, (M, 3).
+        on_frame: Called with the world 50 times a simulated second.
+
+    Returns:
+        How it ended. The arm holds the object over the counter where it is done, and is at home
+        otherwise.
+    """
+    arm, started = Arm(world, on_frame), world.data.time
+    plan = _plan(arm.target, points, others_points, Obstacles(world))
+    if plan is None:
+        return PickOutcome(Result.UNREACHABLE, 0.0, np.empty((0, 3)))
+    result = _execute(arm, plan)
+    if result is not Result.DONE:
+        arm.open_fingers()
+        arm.go_home()
+        return PickOutcome(result, world.data.time - started, np.empty((0, 3)))
+    pose = plan.grasp.pose
+    held = (points[:: 1 + len(points) // MOST_HELD] - pose[:3, 3]) @ pose[:3, :3]
+    return PickOutcome(result, world.data.time - started, held)
+
+
+def _plan(
+    start: np.ndarray, points: np.ndarray, others: np.ndarray, obstacles: Obstacles
+) -> _Plan | None:
+    """The most top-down of the most confident grasps that the arm can reach."""
+    plans: list[_Plan] = []
+    for grasp in propose_grasps(points, others)[:TRIED]:
+        possible = sorted(_plans(start, grasp), key=lambda plan: len(plan.before))
+        free = (plan for plan in possible if not obstacles.strikes(plan.path))
+        plans.extend(islice(free, 1))
+        if len(plans) == MOST_CONFIDENT:
+            break
+    return min(plans, key=lambda plan: plan.grasp.tilt, default=None)
+
+
+def _plans(start: np.ndarray, grasp: Grasp) -> Iterator[_Plan]:
+    """The paths to a grasp, with the fingers on either side; none out of reach."""
+    home = np.array(HOME)
+    for pose in (grasp.pose, turned_over(grasp.pose)):
+        pre_grasp = pose.copy()
+        pre_grasp[:3, 3] -= PRE_GRASP * pose[:3, 2]
+        for ready in islice(kinematics().reach(pre_grasp, home), 1):
+            approach = line_path(ready, pose)
+            lift = None if approach is None else line_path(approach[-1], *_lifted(pose))
+            if approach is not None and lift is not None:
+                before = np.concatenate([joint_path(start, home), joint_path(home, ready)])
+                yield _Plan(Grasp(pose, grasp.confidence), before, approach, lift)
+
+
+def _lifted(pose: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The hand's poses straight above, and where a pick ends; it does not turn on the way."""
+    above, carried = pose.copy(), pose.copy()
+    above[2, 3] += LIFT
+    distance = np.linalg.norm(pose[:2, 3])
+    carried[:2, 3] *= CARRY[0] / distance
+    carried[2, 3] = CARRY[1]
+    return above, carried
+
+
+def _execute(arm: Arm, plan: _Plan) -> Result:
+    arm.open_fingers()
+    if not arm.follow(plan.before) or not arm.follow(plan.approach):
+        return _give_up(arm, plan)
+    arm.close_fingers()
+    if arm.grip < EMPTY:
+        arm.open_fingers()
+        arm.follow(plan.approach[::-1])
+        return Result.MISSED
+    if not arm.follow(plan.lift):
+        return Result.TIMED_OUT
+    return Result.DONE if arm.grip > EMPTY else Result.DROPPED
+
+
+def _give_up(arm: Arm, plan: _Plan) -> Result:
+    """Back out on the way on which it came."""
+    back = joint_path(arm.target, plan.approach[0])
+    arm.follow(back)
+    return Result.TIMED_OUT

@@ -1,0 +1,1 @@
+"""The two drawers as a decision problem, without a robot and without physics."""
