@@ -1,5 +1,7 @@
 """A person who loads the drawers by hand: dishes and drawers move without the arm."""
 
+from collections.abc import Iterable
+
 import numpy as np
 
 from kitchen_prefs.simulation.layout import COUNTER_HEIGHT
@@ -68,7 +70,9 @@ class Person:
 
     def _carry_out(self, decision: Decision, others: list[int]) -> None:
         if isinstance(decision, Toggle):
-            self._slide(decision.drawer, 0.0 if self._opened else DRAWER_TRAVEL)
+            inside = [n for n, drawer in self._drawers.items() if drawer == decision.drawer]
+            opening = 0.0 if self._opened else DRAWER_TRAVEL
+            slide_drawer(self._world, decision.drawer, opening, inside)
             self._opened = None if self._opened else decision.drawer
         elif isinstance(decision, Pick):
             self._held = others[decision.dish]
@@ -76,16 +80,6 @@ class Person:
         else:
             assert isinstance(decision, Place)
             self._put(decision.drawer)
-
-    def _slide(self, drawer: str, opening: float) -> None:
-        """Open or close a drawer together with the dishes in it."""
-        way = opening - self._world.drawer_opening(drawer)
-        self._world.set_drawer(drawer, opening)
-        shift = CABINET_ROTATION.apply((way, 0.0, 0.0))
-        for number in (n for n, other in self._drawers.items() if other == drawer):
-            self._world.set_dish_pose(
-                number, self._world.dish_pose(number)[0] + shift, self._turn(number)
-            )
 
     def _put(self, drawer: str) -> None:
         """Put the dish in hand into the next slot of a drawer."""
@@ -100,3 +94,19 @@ class Person:
 
     def _turn(self, number: int) -> np.ndarray:
         return self._world.dish_pose(number)[1]
+
+
+def slide_drawer(world: World, drawer: str, opening: float, inside: Iterable[int]) -> None:
+    """Open or close a drawer together with the dishes in it, without the arm.
+
+    Args:
+        world: In which they move.
+        drawer: "upper" or "lower".
+        opening: m by which it is open afterwards.
+        inside: The numbers of the dishes in it.
+    """
+    shift = CABINET_ROTATION.apply((opening - world.drawer_opening(drawer), 0.0, 0.0))
+    world.set_drawer(drawer, opening)
+    for number in inside:
+        position, quaternion = world.dish_pose(number)
+        world.set_dish_pose(number, position + shift, quaternion)

@@ -1,0 +1,34 @@
+"""What an experiment leaves to the robot, and what it gives."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+from kitchen_prefs_robot.scene.tableware import Colours
+
+
+@dataclass(frozen=True)
+class Conditions:
+    """How a scene is seen and acted in.
+
+    Attributes:
+        perception: "cameras", or "truth" for categories and poses as they are.
+        grasps: "arm", or "truth" for an invisible hand that never fails.
+        colours: Of the dishes, "distinct" or "alike".
+        lamp: How much the light changes at most, as a share of its brightness.
+        depth_noise: Multiplies the depth's error.
+        camera_error: m by which each camera's estimated position is off, standard deviation of each
+            coordinate, beside the error of the calibration by tags.
+        grasp_failures: The share of picks that are led astray, so that the hand misses the dish or
+            pushes it.
+    """
+
+    perception: Literal["cameras", "truth"] = "cameras"
+    grasps: Literal["arm", "truth"] = "arm"
+    colours: Colours = "distinct"
+    lamp: float = 0.1
+    depth_noise: float = 1.0
+    camera_error: float = 0.0
+    grasp_failures: float = 0.0
+
+
+REAL = Conditions()

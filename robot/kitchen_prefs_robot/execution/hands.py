@@ -1,0 +1,123 @@
+"""What carries out decisions: the arm under contact physics, or an invisible hand."""
+
+from typing import Protocol
+
+import numpy as np
+
+from kitchen_prefs_robot.demonstrations.person import SETTLING, SLOTS, slide_drawer
+from kitchen_prefs_robot.execution.looking import TableDish
+from kitchen_prefs_robot.execution.whereabouts import drawer_of, highest, nearest_on_table
+from kitchen_prefs_robot.motion.drawers import close_drawer, open_drawer
+from kitchen_prefs_robot.motion.dropping import drop
+from kitchen_prefs_robot.motion.moves import OnFrame
+from kitchen_prefs_robot.motion.outcomes import Result
+from kitchen_prefs_robot.motion.picking import PickOutcome, pick
+from kitchen_prefs_robot.perception.regions import HAND
+from kitchen_prefs_robot.scene import World
+from kitchen_prefs_robot.scene.layout import DRAWER_FLOOR, DRAWER_TRAVEL, from_cabinet
+from kitchen_prefs_robot.scene.tableware import real_extents
+
+ASTRAY = 0.05  # m to the side of a dish, where a pick that is led astray takes its points to be
+DROP_HEIGHT = 0.01  # m over the drawer's floor, from which the invisible hand drops
+
+
+class Hand(Protocol):
+    """Carries out decisions in a world, each to its end."""
+
+    held: int | None  # the number of the dish that it truly holds
+
+    def move_drawer(self, drawer: str, opened: bool) -> Result:
+        """Open or close a drawer."""
+
+    def pick(self, dish: TableDish) -> Result:
+        """Pick a dish where it was seen."""
+
+    def drop(self, drawer: str, already: int) -> Result:
+        """Drop what is held into an open drawer that holds some dishes already."""
+
+
+class ArmHand:
+    """The arm: whatever it touches, moves.
+
+    Args:
+        world: In which it acts.
+        grasp_failures: The share of picks that are led astray.
+        seed: Draws which.
+        on_frame: Called with the world 50 times a simulated second.
+    """
+
+    def __init__(
+        self, world: World, grasp_failures: float, seed: int, on_frame: OnFrame | None = None
+    ) -> None:
+        self.held: int | None = None
+        self._world, self._on_frame = world, on_frame
+        self._grasp_failures = grasp_failures
+        self._rng = np.random.default_rng([seed, len("astray")])
+        self._picked: PickOutcome | None = None
+
+    def move_drawer(self, drawer: str, opened: bool) -> Result:
+        """Pull a drawer open by its handle, or push it shut."""
+        move = open_drawer if opened else close_drawer
+        return move(self._world, drawer, self._on_frame).result
+
+    def pick(self, dish: TableDish) -> Result:
+        """Grasp a dish and lift it."""
+        points = dish.points + self._error()
+        self._picked = pick(self._world, points, dish.others(), self._on_frame)
+        self.held = highest(self._world) if self._picked.succeeded else None
+        return self._picked.result
+
+    def drop(self, drawer: str, already: int) -> Result:
+        """Carry what is held over the open drawer, and let go."""
+        assert self._picked is not None
+        outcome = drop(self._world, drawer, self._picked, already, self._on_frame)
+        if outcome.result is not Result.UNREACHABLE:
+            self.held = None
+        return outcome.result
+
+    def _error(self) -> np.ndarray:
+        """By how much a pick is led astray, (3,) m."""
+        if self._rng.random() >= self._grasp_failures:
+            return np.zeros(3)
+        angle = self._rng.uniform(-np.pi, np.pi)
+        return ASTRAY * np.array([np.cos(angle), np.sin(angle), 0.0])
+
+
+class InvisibleHand:
+    """Moves dishes and drawers as a person does, without ever failing.
+
+    Args:
+        world: In which it acts.
+    """
+
+    def __init__(self, world: World) -> None:
+        self.held: int | None = None
+        self._world = world
+
+    def move_drawer(self, drawer: str, opened: bool) -> Result:
+        """Move a drawer together with the dishes in it."""
+        inside = [
+            n for n in range(len(self._world.scene.dishes)) if drawer_of(self._world, n) == drawer
+        ]
+        slide_drawer(self._world, drawer, DRAWER_TRAVEL if opened else 0.0, inside)
+        return Result.DONE
+
+    def pick(self, dish: TableDish) -> Result:
+        """Take the dish that is nearest to where one was seen."""
+        self.held = nearest_on_table(self._world, dish.middle)
+        self._put(np.array(HAND))
+        return Result.DONE
+
+    def drop(self, drawer: str, already: int) -> Result:
+        """Drop what is held into its slot of the drawer."""
+        assert self.held is not None
+        category = self._world.scene.dishes[self.held].category
+        height = DRAWER_FLOOR[drawer] + real_extents(category)[2] / 2 + DROP_HEIGHT
+        self._put(from_cabinet(np.array([*SLOTS[already % len(SLOTS)], height])))
+        self._world.advance(SETTLING)
+        self.held = None
+        return Result.DONE
+
+    def _put(self, place: np.ndarray) -> None:
+        assert self.held is not None
+        self._world.set_dish_pose(self.held, place, self._world.dish_pose(self.held)[1])

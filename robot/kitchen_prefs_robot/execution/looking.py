@@ -1,0 +1,157 @@
+"""One look at the table: which dishes stand where, and which drawer is open."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Protocol
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from kitchen_prefs.simulation.layout import COUNTER_HEIGHT, EXTENTS
+from kitchen_prefs_robot.execution.conditions import Conditions
+from kitchen_prefs_robot.execution.whereabouts import is_on_table
+from kitchen_prefs_robot.motion.seen_points import exact_points
+from kitchen_prefs_robot.perception.cameras import Cameras, laboratory_poses
+from kitchen_prefs_robot.perception.cloud import Frame
+from kitchen_prefs_robot.perception.detection import Detection, perceive
+from kitchen_prefs_robot.perception.known_dishes import known_dishes
+from kitchen_prefs_robot.perception.regions import open_drawer
+from kitchen_prefs_robot.real_to_sim import measure_work_areas, to_drawers_state
+from kitchen_prefs_robot.scene import World
+from kitchen_prefs_robot.scene.layout import DRAWERS
+from kitchen_prefs_robot.task.state import SeenDish
+
+SIZE = (320, 240)  # pixels of the cameras' pictures
+
+
+@dataclass(frozen=True)
+class TableDish:
+    """A dish on the table.
+
+    Attributes:
+        seen: As the task has it, in the kitchen's frame.
+        middle: Where it is, (3,) m in the base's frame.
+        points: On its surface, (N, 3) m in the base's frame.
+        others: Gives the points of all else, (M, 3), which is costly and seldom needed.
+    """
+
+    seen: SeenDish
+    middle: np.ndarray
+    points: np.ndarray
+    others: Callable[[], np.ndarray]
+
+
+@dataclass(frozen=True)
+class Look:
+    """What one look says.
+
+    Attributes:
+        dishes: On the table; those in drawers are remembered, not seen.
+        opened: The drawer that is open, or None.
+        frames: The cameras' pictures; none where nothing was looked at.
+        detections: What perception made of them.
+    """
+
+    dishes: tuple[TableDish, ...]
+    opened: str | None
+    frames: Mapping[str, Frame] = field(default_factory=dict)
+    detections: Sequence[Detection] = ()
+
+
+class Eyes(Protocol):
+    """Looks at a world."""
+
+    def look(self) -> Look:
+        """Look once."""
+
+    def close(self) -> None:
+        """Release what looking needs."""
+
+
+class CameraEyes:
+    """Looks with the three cameras, calibrated by the tags.
+
+    Args:
+        world: What is looked at.
+        conditions: Light is the scene's; the rest of what perception suffers from is here.
+        seed: Of all noise.
+
+    Raises:
+        NoOpenGLError: If there is no OpenGL library to draw with.
+    """
+
+    def __init__(self, world: World, conditions: Conditions, seed: int) -> None:
+        rng = np.random.default_rng([seed, len("cameras")])
+        self.poses = {name: pose.copy() for name, pose in laboratory_poses().items()}
+        for pose in self.poses.values():
+            pose[:3, 3] += conditions.camera_error * rng.standard_normal(3)
+        categories = tuple(dict.fromkeys(dish.category for dish in world.scene.dishes))
+        self._known = known_dishes(categories, conditions.colours)
+        self._areas = measure_work_areas(seed=seed)
+        self._cameras = Cameras(world, self.poses, *SIZE, conditions.depth_noise, seed)
+        self._cameras.__enter__()
+
+    def look(self) -> Look:
+        """Take three pictures and find the dishes on the counter.
+
+        Raises:
+            ValueError: If the cameras see no table, or not the front of a drawer.
+        """
+        frames = self._cameras.take()
+        sight = perceive(self._cameras.cloud(frames), self._known)
+        found = [dish for dish in sight.dishes if dish.place == "counter"]
+        state = to_drawers_state(found, sight.openings, self._areas)
+
+        def others_of(dish: Detection) -> Callable[[], np.ndarray]:
+            return lambda: sight.obstacles_beside(dish)
+
+        dishes = tuple(
+            TableDish(seen, dish.box.middle, dish.cloud.points, others_of(dish))
+            for seen, dish in zip(state.dishes, found, strict=True)
+        )
+        return Look(dishes, state.opened, frames, sight.dishes)
+
+    def close(self) -> None:
+        """Release OpenGL."""
+        self._cameras.__exit__()
+
+
+class TrueEyes:
+    """Knows what is true; as `CameraEyes`, without pictures."""
+
+    def __init__(self, world: World, seed: int) -> None:
+        self._world = world
+        self._counter = measure_work_areas(noise=0.0)["counter"]
+        self._rng = np.random.default_rng([seed, len("truth")])
+
+    def look(self) -> Look:
+        """Read the state of the world."""
+        world = self._world
+        standing = [n for n in range(len(world.scene.dishes)) if is_on_table(world, n)]
+        openings = {drawer: world.drawer_opening(drawer) for drawer in DRAWERS}
+        return Look(tuple(map(self._dish, standing)), open_drawer(openings))
+
+    def close(self) -> None:
+        """Do nothing: there is nothing to release."""
+
+    def _dish(self, number: int) -> TableDish:
+        middle, quaternion = self._world.dish_pose(number)
+        points, others = exact_points(self._world, number, self._rng)
+        return TableDish(self._seen(number, middle, quaternion), middle, points, lambda: others)
+
+    def _seen(self, number: int, middle: np.ndarray, quaternion: np.ndarray) -> SeenDish:
+        category = self._world.scene.dishes[number].category
+        x, y = (float(value) for value in self._counter.to_kitchen(middle[:2]))
+        turn = Rotation.from_quat(quaternion, scalar_first=True)
+        w, i, j, k = (
+            (Rotation.from_euler("z", self._counter.yaw) * turn).as_quat(scalar_first=True).tolist()
+        )
+        z = COUNTER_HEIGHT + EXTENTS[category][2] / 2
+        return SeenDish(category, (x, y, z), (w, i, j, k), None)
+
+
+def make_eyes(world: World, conditions: Conditions, seed: int) -> Eyes:
+    """The eyes that an experiment gives to the robot."""
+    if conditions.perception == "truth":
+        return TrueEyes(world, seed)
+    return CameraEyes(world, conditions, seed)

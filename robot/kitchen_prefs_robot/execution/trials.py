@@ -1,0 +1,91 @@
+"""A policy in scenes, from the first look to the last decision."""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from kitchen_prefs.evaluation.rollouts import Policy
+from kitchen_prefs_robot.demonstrations.preferences import human_preference
+from kitchen_prefs_robot.execution.conditions import Conditions
+from kitchen_prefs_robot.execution.episode import RobotEpisode
+from kitchen_prefs_robot.execution.outcomes import EpisodeOutcome, outcome_of
+from kitchen_prefs_robot.execution.prompts import prompt_for
+from kitchen_prefs_robot.task.rollouts import TASK, policy_observation
+from kitchen_prefs_robot.task.rows import chosen_decision
+from kitchen_prefs_robot.task.summaries import summarise
+
+Watch = Callable[[RobotEpisode], None]
+
+VARIATIONS = {
+    "all real": Conditions(),
+    "perfect perception": Conditions(perception="truth"),
+    "perfect grasps": Conditions(grasps="truth"),
+    "perfect perception and grasps": Conditions(perception="truth", grasps="truth"),
+    "alike colours, lamp 20 %": Conditions(colours="alike", lamp=0.2),
+    "lamp 40 %": Conditions(lamp=0.4),
+    "depth noise x 3": Conditions(depth_noise=3.0),
+    "cameras 5 mm off": Conditions(camera_error=0.005),
+    "10 % of grasps led astray": Conditions(grasp_failures=0.1),
+    "30 % of grasps led astray": Conditions(grasp_failures=0.3),
+}
+
+
+@dataclass(frozen=True)
+class Trial:
+    """A scene and a preference."""
+
+    scene: int
+    preference: int
+
+
+def run(
+    policy: Policy,
+    trial: Trial,
+    conditions: Conditions,
+    prompt: np.ndarray | None = None,
+    watch: Watch | None = None,
+    on_frame: Callable[[object], None] | None = None,
+) -> EpisodeOutcome:
+    """Let a policy load a scene as a demonstration shows.
+
+    Args:
+        policy: The policy, as `kitchen_prefs.evaluation.policy_loading.load_policy` loads it.
+        trial: The scene, and the preference that is demonstrated.
+        conditions: What is left to the robot.
+        prompt: The demonstration, (1664, 14); one in another scene by default.
+        watch: Called with the episode at its start and after each decision.
+        on_frame: Called with the world 50 times a simulated second while the arm moves.
+
+    Raises:
+        ValueError: If the cameras see no dish, or the demonstration is none.
+    """
+    if prompt is None:
+        prompt = prompt_for(trial.scene, trial.preference, conditions)
+    wanted = human_preference(trial.preference)
+    with RobotEpisode(trial.scene, wanted, conditions, on_frame) as episode:
+        policy.reset()
+        while not (episode.terminated or episode.truncated):
+            if watch is not None:
+                watch(episode)
+            episode.decide(
+                chosen_decision(episode.state, episode.rows, act(policy, episode, prompt))
+            )
+        if watch is not None:
+            watch(episode)
+        return outcome_of(episode)
+
+
+def act(policy: Policy, episode: RobotEpisode, prompt: np.ndarray) -> Sequence[float]:
+    """The policy's next action, a pose (7,)."""
+    summary, agent = summarise(episode.state, len(episode.steps))
+    observation = policy_observation(episode.rows, prompt)
+    observation |= {"environment_state": summary, "agent_pos": agent}
+    return policy.act([observation], [TASK])[0].tolist()
+
+
+def trials(scenes: int, preferences: int) -> Iterator[Trial]:
+    """Each scene with each preference."""
+    for scene in range(scenes):
+        for preference in range(preferences):
+            yield Trial(scene, preference)
