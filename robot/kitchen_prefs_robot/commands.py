@@ -14,6 +14,7 @@ from tqdm import tqdm
 
 from kitchen_prefs.metrics import wilson
 from kitchen_prefs_robot.demonstrations.commands import demonstrate
+from kitchen_prefs_robot.execution.commands import run, table
 from kitchen_prefs_robot.perception.commands import perception
 
 app = typer.Typer(
@@ -21,6 +22,8 @@ app = typer.Typer(
 )
 app.command()(perception)
 app.command()(demonstrate)
+app.command()(run)
+app.command()(table)
 console = Console()
 
 

@@ -1,15 +1,17 @@
 """What came of an episode: the paper's success, and what each dish that is not right failed by."""
 
 from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
 from rapidfuzz.distance import LCSseq
+from scipy.stats import bootstrap
 
+from kitchen_prefs.metrics import Interval
 from kitchen_prefs_robot.execution.episode import RobotEpisode, Step
 from kitchen_prefs_robot.execution.whereabouts import drawer_of, is_on_table
 from kitchen_prefs_robot.task.decisions import Place, Toggle
-
-CAUSES = ("perception", "grasp", "decision", "drawer")
 
 
 @dataclass(frozen=True)
@@ -25,7 +27,8 @@ class EpisodeOutcome:
         refused: How many of them the rules did not allow.
         failed_picks: How many picks did not end with a dish in hand.
         misread: How many dishes were taken for another category when they were picked.
-        causes: For each of CAUSES, how many of the dishes that are not right it explains.
+        causes: How many of the dishes that are not right each cause explains: perception, grasp,
+            drawer or decision.
         seconds: How long it took, of simulated time.
     """
 
@@ -71,6 +74,15 @@ def outcome_of(episode: RobotEpisode) -> EpisodeOutcome:
         causes=dict(Counter(_cause(episode, number) for number in wrong)),
         seconds=float(world.data.time),
     )
+
+
+def mean_right(outcomes: Sequence[EpisodeOutcome]) -> Interval:
+    """The mean share of dishes that are right, with the 95 % bootstrap interval over episodes."""
+    values = np.array([one.right for one in outcomes])
+    if len(values) < 2 or values.min() == values.max():  # the bootstrap has no width there
+        return Interval(*3 * (float(values.mean()),))
+    found = bootstrap((values,), np.mean, method="percentile", rng=0).confidence_interval
+    return Interval(float(values.mean()), float(found.low), float(found.high))
 
 
 def _placements(steps: list[Step]) -> list[tuple[int, str]]:

@@ -1,6 +1,6 @@
 """A policy in scenes, from the first look to the last decision."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,11 +11,10 @@ from kitchen_prefs_robot.execution.conditions import Conditions
 from kitchen_prefs_robot.execution.episode import RobotEpisode
 from kitchen_prefs_robot.execution.outcomes import EpisodeOutcome, outcome_of
 from kitchen_prefs_robot.execution.prompts import prompt_for
+from kitchen_prefs_robot.execution.watching import NOBODY, Watcher
 from kitchen_prefs_robot.task.rollouts import TASK, policy_observation
 from kitchen_prefs_robot.task.rows import chosen_decision
 from kitchen_prefs_robot.task.summaries import summarise
-
-Watch = Callable[[RobotEpisode], None]
 
 VARIATIONS = {
     "all real": Conditions(),
@@ -39,13 +38,12 @@ class Trial:
     preference: int
 
 
-def run(
+def run_trial(
     policy: Policy,
     trial: Trial,
     conditions: Conditions,
     prompt: np.ndarray | None = None,
-    watch: Watch | None = None,
-    on_frame: Callable[[object], None] | None = None,
+    watcher: Watcher = NOBODY,
 ) -> EpisodeOutcome:
     """Let a policy load a scene as a demonstration shows.
 
@@ -54,8 +52,7 @@ def run(
         trial: The scene, and the preference that is demonstrated.
         conditions: What is left to the robot.
         prompt: The demonstration, (1664, 14); one in another scene by default.
-        watch: Called with the episode at its start and after each decision.
-        on_frame: Called with the world 50 times a simulated second while the arm moves.
+        watcher: Is told what happens.
 
     Raises:
         ValueError: If the cameras see no dish, or the demonstration is none.
@@ -63,16 +60,14 @@ def run(
     if prompt is None:
         prompt = prompt_for(trial.scene, trial.preference, conditions)
     wanted = human_preference(trial.preference)
-    with RobotEpisode(trial.scene, wanted, conditions, on_frame) as episode:
+    with RobotEpisode(trial.scene, wanted, conditions, watcher.frame) as episode:
         policy.reset()
         while not (episode.terminated or episode.truncated):
-            if watch is not None:
-                watch(episode)
-            episode.decide(
-                chosen_decision(episode.state, episode.rows, act(policy, episode, prompt))
-            )
-        if watch is not None:
-            watch(episode)
+            watcher.look(episode)
+            decision = chosen_decision(episode.state, episode.rows, act(policy, episode, prompt))
+            watcher.decide(episode, decision)
+            episode.decide(decision)
+        watcher.look(episode)
         return outcome_of(episode)
 
 
