@@ -84,8 +84,7 @@ def _plan(
     """The most top-down of the most confident grasps that the arm can reach."""
     plans: list[_Plan] = []
     for grasp in propose_grasps(points, others)[:TRIED]:
-        possible = sorted(_plans(start, grasp), key=lambda plan: len(plan.before))
-        free = (plan for plan in possible if not obstacles.strikes(plan.path))
+        free = (plan for plan in _plans(start, grasp) if not obstacles.strikes(plan.path))
         plans.extend(islice(free, 1))
         if len(plans) == MOST_CONFIDENT:
             break
@@ -93,17 +92,24 @@ def _plan(
 
 
 def _plans(start: np.ndarray, grasp: Grasp) -> Iterator[_Plan]:
-    """The paths to a grasp, with the fingers on either side; none out of reach."""
-    home = np.array(HOME)
+    """The paths to a grasp, with the fingers on the closer side first; none out of reach."""
+    home, sides = np.array(HOME), []
     for pose in (grasp.pose, turned_over(grasp.pose)):
-        pre_grasp = pose.copy()
-        pre_grasp[:3, 3] -= PRE_GRASP * pose[:3, 2]
-        for ready in islice(kinematics().reach(pre_grasp, home), 1):
-            approach = line_path(ready, pose)
-            lift = None if approach is None else line_path(approach[-1], *_lifted(pose))
-            if approach is not None and lift is not None:
-                before = np.concatenate([joint_path(start, home), joint_path(home, ready)])
-                yield _Plan(Grasp(pose, grasp.confidence), before, approach, lift)
+        for ready in islice(kinematics().reach(_pre_grasp(pose), home), 1):
+            sides.append((float(np.abs(ready - home).max()), pose, ready))
+    for _, pose, ready in sorted(sides, key=lambda side: side[0]):
+        approach = line_path(ready, pose)
+        lift = None if approach is None else line_path(approach[-1], *_lifted(pose))
+        if approach is not None and lift is not None:
+            before = np.concatenate([joint_path(start, home), joint_path(home, ready)])
+            yield _Plan(Grasp(pose, grasp.confidence), before, approach, lift)
+
+
+def _pre_grasp(pose: np.ndarray) -> np.ndarray:
+    """The hand's pose before it approaches, (4, 4)."""
+    before = pose.copy()
+    before[:3, 3] -= PRE_GRASP * pose[:3, 2]
+    return before
 
 
 def _lifted(pose: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
