@@ -6,7 +6,7 @@ obstacles    whether a path would strike the furniture or the arm itself
 hand         the room that the open hand takes
 grasps       where fingers can hold an object that is known by its points
 outcomes     how a motion can end
-picking      pick a dish
+picking      pick a dish, or put it back
 dropping     drop it into an open drawer
 drawers      open and close a drawer by its handle
 seen_points  points of a dish, exact or as cameras see them, for trials
@@ -16,6 +16,15 @@ trials       how often single motions succeed
 from kitchen_prefs_robot.motion.drawers import close_drawer, open_drawer
 from kitchen_prefs_robot.motion.dropping import drop
 from kitchen_prefs_robot.motion.outcomes import Outcome, Result
-from kitchen_prefs_robot.motion.picking import PickOutcome, pick
+from kitchen_prefs_robot.motion.picking import PickOutcome, pick, put_back
 
-__all__ = ["Outcome", "PickOutcome", "Result", "close_drawer", "drop", "open_drawer", "pick"]
+__all__ = [
+    "Outcome",
+    "PickOutcome",
+    "Result",
+    "close_drawer",
+    "drop",
+    "open_drawer",
+    "pick",
+    "put_back",
+]

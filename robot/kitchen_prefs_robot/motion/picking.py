@@ -29,9 +29,11 @@ class PickOutcome(Outcome):
 
     Attributes:
         held: Points of the object in the hand's frame, (K, 3) m; none where nothing is held.
+        way: The joints' path from the grasp to where the pick ended, (N, 7), likewise.
     """
 
     held: np.ndarray
+    way: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -67,15 +69,38 @@ def pick(
     arm, started = Arm(world, on_frame), world.data.time
     plan = _plan(arm.target, points, others_points, Obstacles(world))
     if plan is None:
-        return PickOutcome(Result.UNREACHABLE, 0.0, np.empty((0, 3)))
+        return _nothing_held(Result.UNREACHABLE, 0.0)
     result = _execute(arm, plan)
     if result is not Result.DONE:
         arm.open_fingers()
         arm.go_home()
-        return PickOutcome(result, world.data.time - started, np.empty((0, 3)))
+        return _nothing_held(result, world.data.time - started)
     pose = plan.grasp.pose
     held = (points[:: 1 + len(points) // MOST_HELD] - pose[:3, 3]) @ pose[:3, :3]
-    return PickOutcome(result, world.data.time - started, held)
+    return PickOutcome(result, world.data.time - started, held, plan.lift)
+
+
+def put_back(world: World, picked: PickOutcome, on_frame: OnFrame | None = None) -> Outcome:
+    """Put what a pick has grasped back to where it stood, for want of a place to drop it.
+
+    Args:
+        world: In which the arm has not moved since the pick.
+        picked: Its outcome.
+        on_frame: Called with the world 50 times a simulated second.
+
+    Returns:
+        How it ended; the arm is at home.
+    """
+    arm, started = Arm(world, on_frame), world.data.time
+    arrived = arm.follow(picked.way[::-1])
+    arm.open_fingers()
+    arm.follow(picked.way)
+    arm.go_home()
+    return Outcome(Result.DONE if arrived else Result.TIMED_OUT, world.data.time - started)
+
+
+def _nothing_held(result: Result, seconds: float) -> PickOutcome:
+    return PickOutcome(result, seconds, np.empty((0, 3)), np.empty((0, 7)))
 
 
 def _plan(

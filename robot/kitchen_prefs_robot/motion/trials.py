@@ -5,12 +5,12 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
-from kitchen_prefs_robot.motion.drawers import close_drawer, open_drawer
+from kitchen_prefs_robot.motion.drawers import OPENED, close_drawer, open_drawer
 from kitchen_prefs_robot.motion.picking import pick
 from kitchen_prefs_robot.scene import PAPER_DISHES, World, sample_scene
 
 LIFTED = 0.10  # m: a dish that stands this much higher than before has been picked
-OPENED, CLOSED = 0.24, 0.01  # m: what counts as open and as closed
+CLOSED = 0.01  # m: what counts as closed
 
 Points = Callable[[World, int, np.random.Generator], tuple[np.ndarray, np.ndarray]]
 

@@ -5,7 +5,7 @@ import pytest
 
 pytest.importorskip("mink", reason="needs the extra `robot`")
 
-from kitchen_prefs_robot.motion import Result, close_drawer, drop, open_drawer, pick
+from kitchen_prefs_robot.motion import Result, close_drawer, drop, open_drawer, pick, put_back
 from kitchen_prefs_robot.motion.seen_points import exact_points, seen_points
 from kitchen_prefs_robot.scene import World, sample_scene
 from kitchen_prefs_robot.scene.arm import HOME
@@ -41,6 +41,18 @@ def test_a_bowl_is_picked_and_dropped_into_the_drawer():
     assert 0.0 < inside[0] < 0.28
     assert abs(inside[1]) < 0.18
     assert inside[2] == pytest.approx(DRAWER_FLOOR["lower"] + 0.03, abs=0.02)
+
+
+def test_a_dish_for_a_closed_drawer_is_put_back():
+    world = bowl_world()
+    before = world.dish_pose(0)[0]
+    picked = pick(world, *points_of(world))
+    time = world.data.time
+    assert drop(world, "upper", picked).result is Result.UNREACHABLE
+    assert world.data.time == time
+    assert put_back(world, picked).succeeded
+    assert world.dish_pose(0)[0] == pytest.approx(before, abs=0.02)
+    assert at_home(world)
 
 
 def test_a_cup_is_picked_as_cameras_see_it():
