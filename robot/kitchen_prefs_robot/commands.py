@@ -13,6 +13,7 @@ from rich.table import Table
 from tqdm import tqdm
 
 from kitchen_prefs.metrics import wilson
+from kitchen_prefs.rendering.opengl import NoOpenGLError
 from kitchen_prefs_robot.demonstrations.commands import demonstrate
 from kitchen_prefs_robot.perception.commands import perception
 
@@ -29,13 +30,18 @@ def require_robot() -> None:
     """Make sure that the extra `robot` is installed.
 
     Raises:
-        OSError: If it is not; the message says how to install it.
+        OSError: If it is not, or if `MUJOCO_GL` names an OpenGL that is not there; the message says
+            what to install.
     """
     if not all(map(find_spec, ("mujoco", "gym_hil", "mink", "fast_simplification"))):
         raise OSError(
             "The robot needs MuJoCo, its arm and its kinematics: "
             "`pip install 'lerobot_policy_kitchen_prefs[robot]'`. Everything else works without it."
         )
+    try:
+        import mujoco  # noqa: F401
+    except (ImportError, AttributeError) as error:  # with MUJOCO_GL set it loads OpenGL at once
+        raise NoOpenGLError from error
 
 
 @app.command()
