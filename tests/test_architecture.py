@@ -124,11 +124,15 @@ ROBOT = {
         "kitchen_prefs.physics kitchen_prefs.preferences kitchen_prefs.rendering "
         "kitchen_prefs.simulation kitchen_prefs.utils"
     ),
+    "motion": "scene kitchen_prefs.rendering",
     "perception": "scene kitchen_prefs.utils",
     "real_to_sim": "perception scene task kitchen_prefs.simulation",
     "demonstrations": (
         "perception real_to_sim scene task kitchen_prefs.datasets kitchen_prefs.instances "
         "kitchen_prefs.simulation kitchen_prefs.utils"
+    ),
+    "commands": (
+        "demonstrations motion perception scene kitchen_prefs.metrics kitchen_prefs.rendering"
     ),
     "__init__": "",
 }

@@ -7,6 +7,7 @@ from itertools import islice
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from kitchen_prefs_robot.motion.drawers import OPENED
 from kitchen_prefs_robot.motion.kinematics import kinematics
 from kitchen_prefs_robot.motion.moves import Arm, OnFrame, joint_path, line_path
 from kitchen_prefs_robot.motion.obstacles import Obstacles
@@ -64,11 +65,12 @@ def drop(
         on_frame: Called with the world 50 times a simulated second.
 
     Returns:
-        How it ended. The arm is at home; where no path was found, it has not moved and still holds
-        the dish.
+        How it ended. The arm is at home; where no path was found, as into a drawer that is not
+        open, it has not moved and still holds the dish (`put_back` puts it down).
     """
     arm, started = Arm(world, on_frame), world.data.time
-    plan = _plan(arm.target, drawer, pick.held, already, Obstacles(world))
+    is_open = world.drawer_opening(drawer) > OPENED
+    plan = _plan(arm.target, drawer, pick.held, already, Obstacles(world)) if is_open else None
     if plan is None:
         return Outcome(Result.UNREACHABLE, 0.0)
     if not arm.follow(plan.over):

@@ -17,6 +17,8 @@ ITERATIONS = 60  # of one start; a reachable pose needs ten
 FOLLOWING = 8  # iterations from one pose of a line to the next, a centimetre away
 # Radians that turn the first and the last joint of a start: the hand has two sides.
 STARTS = ((0.0, 0.0), (0.0, np.pi / 2), (0.0, -np.pi / 2), (0.5, 0.0), (-0.5, 0.0))
+# A quick test before the search: the wrist, behind the hand, lies within the arm's length, m.
+SHOULDER, ARM_LENGTH, HAND_LENGTH = np.array([0.0, 0.0, 0.333]), 0.81, 0.256
 SAME = 0.1  # radians between solutions that are one
 MARGIN = 0.03  # radians from the joints' limits
 JUMP = 0.5  # radians that no joint moves from one pose of a line to the next
@@ -51,6 +53,8 @@ class Kinematics:
             Solutions that differ, (7,) each, those with the smallest moves first as a rule; none
             out of reach.
         """
+        if np.linalg.norm(pose[:3, 3] - HAND_LENGTH * pose[:3, 2] - SHOULDER) > ARM_LENGTH:
+            return
         found: list[np.ndarray] = []
         for start in _starts(pose, near):
             joints = self._solve(pose, start, ITERATIONS)

@@ -29,9 +29,11 @@ class PickOutcome(Outcome):
 
     Attributes:
         held: Points of the object in the hand's frame, (K, 3) m; none where nothing is held.
+        way: The joints' path from the grasp to where the pick ended, (N, 7), likewise.
     """
 
     held: np.ndarray
+    way: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -67,15 +69,38 @@ def pick(
     arm, started = Arm(world, on_frame), world.data.time
     plan = _plan(arm.target, points, others_points, Obstacles(world))
     if plan is None:
-        return PickOutcome(Result.UNREACHABLE, 0.0, np.empty((0, 3)))
+        return _nothing_held(Result.UNREACHABLE, 0.0)
     result = _execute(arm, plan)
     if result is not Result.DONE:
         arm.open_fingers()
         arm.go_home()
-        return PickOutcome(result, world.data.time - started, np.empty((0, 3)))
+        return _nothing_held(result, world.data.time - started)
     pose = plan.grasp.pose
     held = (points[:: 1 + len(points) // MOST_HELD] - pose[:3, 3]) @ pose[:3, :3]
-    return PickOutcome(result, world.data.time - started, held)
+    return PickOutcome(result, world.data.time - started, held, plan.lift)
+
+
+def put_back(world: World, picked: PickOutcome, on_frame: OnFrame | None = None) -> Outcome:
+    """Put what a pick has grasped back to where it stood, for want of a place to drop it.
+
+    Args:
+        world: In which the arm has not moved since the pick.
+        picked: Its outcome.
+        on_frame: Called with the world 50 times a simulated second.
+
+    Returns:
+        How it ended; the arm is at home.
+    """
+    arm, started = Arm(world, on_frame), world.data.time
+    arrived = arm.follow(picked.way[::-1])
+    arm.open_fingers()
+    arm.follow(picked.way)
+    arm.go_home()
+    return Outcome(Result.DONE if arrived else Result.TIMED_OUT, world.data.time - started)
+
+
+def _nothing_held(result: Result, seconds: float) -> PickOutcome:
+    return PickOutcome(result, seconds, np.empty((0, 3)), np.empty((0, 7)))
 
 
 def _plan(
@@ -84,8 +109,7 @@ def _plan(
     """The most top-down of the most confident grasps that the arm can reach."""
     plans: list[_Plan] = []
     for grasp in propose_grasps(points, others)[:TRIED]:
-        possible = sorted(_plans(start, grasp), key=lambda plan: len(plan.before))
-        free = (plan for plan in possible if not obstacles.strikes(plan.path))
+        free = (plan for plan in _plans(start, grasp) if not obstacles.strikes(plan.path))
         plans.extend(islice(free, 1))
         if len(plans) == MOST_CONFIDENT:
             break
@@ -93,17 +117,24 @@ def _plan(
 
 
 def _plans(start: np.ndarray, grasp: Grasp) -> Iterator[_Plan]:
-    """The paths to a grasp, with the fingers on either side; none out of reach."""
-    home = np.array(HOME)
+    """The paths to a grasp, with the fingers on the closer side first; none out of reach."""
+    home, sides = np.array(HOME), []
     for pose in (grasp.pose, turned_over(grasp.pose)):
-        pre_grasp = pose.copy()
-        pre_grasp[:3, 3] -= PRE_GRASP * pose[:3, 2]
-        for ready in islice(kinematics().reach(pre_grasp, home), 1):
-            approach = line_path(ready, pose)
-            lift = None if approach is None else line_path(approach[-1], *_lifted(pose))
-            if approach is not None and lift is not None:
-                before = np.concatenate([joint_path(start, home), joint_path(home, ready)])
-                yield _Plan(Grasp(pose, grasp.confidence), before, approach, lift)
+        for ready in islice(kinematics().reach(_pre_grasp(pose), home), 1):
+            sides.append((float(np.abs(ready - home).max()), pose, ready))
+    for _, pose, ready in sorted(sides, key=lambda side: side[0]):
+        approach = line_path(ready, pose)
+        lift = None if approach is None else line_path(approach[-1], *_lifted(pose))
+        if approach is not None and lift is not None:
+            before = np.concatenate([joint_path(start, home), joint_path(home, ready)])
+            yield _Plan(Grasp(pose, grasp.confidence), before, approach, lift)
+
+
+def _pre_grasp(pose: np.ndarray) -> np.ndarray:
+    """The hand's pose before it approaches, (4, 4)."""
+    before = pose.copy()
+    before[:3, 3] -= PRE_GRASP * pose[:3, 2]
+    return before
 
 
 def _lifted(pose: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
