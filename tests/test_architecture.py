@@ -128,6 +128,8 @@ ROBOT = {
         "kitchen_prefs.physics kitchen_prefs.preferences kitchen_prefs.rendering "
         "kitchen_prefs.simulation kitchen_prefs.utils"
     ),
+    "motion": "scene kitchen_prefs.rendering",
+    "commands": "motion scene kitchen_prefs.metrics",
     "__init__": "",
 }
 

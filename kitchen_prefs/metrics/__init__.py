@@ -13,6 +13,7 @@ from kitchen_prefs.metrics.intervals import (
     prompt_use,
     summarise,
     summarise_all,
+    wilson,
     wilson_success,
 )
 from kitchen_prefs.metrics.scores import (
@@ -62,5 +63,6 @@ __all__ = [
     "summarise_all",
     "temporal_efficiency",
     "turn_accuracy",
+    "wilson",
     "wilson_success",
 ]

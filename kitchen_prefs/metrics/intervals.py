@@ -52,18 +52,27 @@ def summarise_all(episodes: Sequence[Episode]) -> dict[str, Interval]:
 
 
 def wilson_success(episodes: Sequence[Episode]) -> Interval:
-    """The share of episodes that succeed and its 95 % Wilson interval (Wilson, 1927).
+    """The share of episodes that succeed and its 95 % Wilson interval.
 
     LeRobot's `pc_success_ci95`. Unlike the bootstrap's it has a width where all episodes succeed.
 
     Raises:
         ValueError: If there are no episodes.
     """
+    return wilson(sum(map(success, episodes)), len(episodes))
+
+
+def wilson(successes: int, trials: int) -> Interval:
+    """The share of trials that succeed and its 95 % Wilson interval (Wilson, 1927).
+
+    Raises:
+        ValueError: If there are no trials.
+    """
     from scipy.stats import binomtest  # takes half a second to import
 
-    if not episodes:
+    if not trials:
         raise ValueError("There are no episodes to summarise.")
-    test = binomtest(sum(map(success, episodes)), len(episodes))
+    test = binomtest(successes, trials)
     low, high = test.proportion_ci(method="wilson")
     return Interval(test.statistic, float(low), float(high))
 

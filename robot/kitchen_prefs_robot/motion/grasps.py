@@ -16,7 +16,7 @@ from kitchen_prefs_robot.motion.kinematics import hand_pose
 DOWN = np.array([0.0, 0.0, -1.0])
 MOST_POINTS = 1500  # of the object and of the others each; more give no better grasps
 NEIGHBOURS = 20  # points that give a normal
-SAMPLES = 160  # points at which a grasp is tried
+SAMPLES = 120  # points at which a grasp is tried
 TURNS = np.deg2rad([0.0, -25.0, 25.0])  # of the approach about the closing line
 STEEPEST, FLATTEST = 0.0, np.deg2rad(68.0)  # tilt of the approach from straight down
 DEPTH = 0.012  # m that the fingertips reach beyond the wall's edge

@@ -29,6 +29,7 @@ def _mirrored(box: tuple[tuple[float, ...], tuple[float, ...]]) -> np.ndarray:
 
 
 BOXES = np.array([*_RIGHT, *map(_mirrored, _RIGHT), *_MIDDLE])  # (6, 2, 3)
+BOXES_REACH = np.abs(BOXES).max(axis=(0, 1))  # (3,)
 _CHOICE = np.array([(i, j, k) for i in (0, 1) for j in (0, 1) for k in (0, 1)])
 _OPEN_CORNERS = np.concatenate([box[_CHOICE, [0, 1, 2]] for box in BOXES])
 _CLOSED_TIPS = np.array([(x, 0.0, CLOSED_TIP) for x in (-PAD_HALF_WIDTH, PAD_HALF_WIDTH)])
@@ -37,9 +38,10 @@ CORNERS = np.concatenate([_OPEN_CORNERS, _CLOSED_TIPS])  # (50, 3)
 
 def struck(points: np.ndarray) -> int:
     """How many points, (N, 3) in the hand's frame, the open hand would strike."""
-    above = points[:, None] > BOXES[:, 0]
-    below = points[:, None] < BOXES[:, 1]
-    return int((above & below).all(axis=2).any(axis=1).sum())
+    near = (np.abs(points) < BOXES_REACH).all(axis=1)
+    local = points[near, None]
+    inside = ((local > BOXES[:, 0]) & (local < BOXES[:, 1])).all(axis=2)
+    return int(np.any(inside, axis=1).sum())
 
 
 def lowest(pose: np.ndarray) -> float:

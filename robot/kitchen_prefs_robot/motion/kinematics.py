@@ -4,19 +4,22 @@ The hand's frame is the gripper's pinch: its origin lies between the fingertips,
 hand, y from one fingertip to the other. A pose is a (4, 4) matrix in the frame of the base.
 """
 
+from collections.abc import Iterator
 from functools import cache
 
 import mink
-import mujoco
 import numpy as np
 
-from kitchen_prefs_robot.scene.arm import ARM_JOINTS, HOME, PINCH, arm_kinematics
+from kitchen_prefs_robot.scene.arm import HOME, PINCH, arm_kinematics
 
 TOLERANCE = (0.001, 0.01)  # m and radians by which a solution may miss its pose
 ITERATIONS = 60  # of one start; a reachable pose needs ten
 FOLLOWING = 8  # iterations from one pose of a line to the next, a centimetre away
 # Radians that turn the first and the last joint of a start: the hand has two sides.
 STARTS = ((0.0, 0.0), (0.0, np.pi / 2), (0.0, -np.pi / 2), (0.5, 0.0), (-0.5, 0.0))
+# A quick test before the search: the wrist, behind the hand, lies within the arm's length, m.
+SHOULDER, ARM_LENGTH, HAND_LENGTH = np.array([0.0, 0.0, 0.333]), 0.81, 0.256
+SAME = 0.1  # radians between solutions that are one
 MARGIN = 0.03  # radians from the joints' limits
 JUMP = 0.5  # radians that no joint moves from one pose of a line to the next
 
@@ -39,19 +42,25 @@ class Kinematics:
         self._configuration.update(np.asarray(joints, dtype=float))
         return self._configuration.get_transform_frame_to_world(PINCH, "site").as_matrix()
 
-    def reach(self, pose: np.ndarray, near: np.ndarray) -> np.ndarray | None:
-        """Joints that put the hand at a pose.
+    def reach(self, pose: np.ndarray, near: np.ndarray) -> Iterator[np.ndarray]:
+        """Search for joints that put the hand at a pose.
 
         Args:
             pose: Of the hand, (4, 4).
             near: The joints from which the arm will move there, (7,).
 
-        Returns:
-            The solution closest to `near`, (7,), or None where the arm cannot reach.
+        Yields:
+            Solutions that differ, (7,) each, those with the smallest moves first as a rule; none
+            out of reach.
         """
-        found = [self._solve(pose, start, ITERATIONS) for start in _starts(pose, near)]
-        solutions = [joints for joints in found if joints is not None]
-        return min(solutions, key=lambda joints: np.abs(joints - near).max(), default=None)
+        if np.linalg.norm(pose[:3, 3] - HAND_LENGTH * pose[:3, 2] - SHOULDER) > ARM_LENGTH:
+            return
+        found: list[np.ndarray] = []
+        for start in _starts(pose, near):
+            joints = self._solve(pose, start, ITERATIONS)
+            if joints is not None and not any(np.allclose(joints, f, atol=SAME) for f in found):
+                found.append(joints)
+                yield joints
 
     def line(self, poses: np.ndarray, start: np.ndarray) -> np.ndarray | None:
         """Joints that lead the hand through poses that lie close to one another.
@@ -100,14 +109,14 @@ def kinematics() -> Kinematics:
 
 
 def _starts(pose: np.ndarray, near: np.ndarray) -> list[np.ndarray]:
-    """Where the search begins: here, and at home with the arm turned towards the pose."""
+    """Where the search begins: at home with the arm turned towards the pose, and here."""
     azimuth = np.arctan2(pose[1, 3], pose[0, 3])
-    starts = [np.asarray(near, dtype=float)]
+    starts = []
     for first, last in STARTS:
         start = np.array(HOME)
         start[0], start[6] = azimuth + first, start[6] + last
         starts.append(start)
-    return starts
+    return [starts[0], np.asarray(near, dtype=float), *starts[1:]]
 
 
 def hand_pose(position: np.ndarray, approach: np.ndarray, closing: np.ndarray) -> np.ndarray:

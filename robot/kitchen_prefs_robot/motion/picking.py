@@ -1,12 +1,15 @@
 """Pick a dish: choose a grasp, come from above, approach on a straight line, close, lift."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import islice
 
 import numpy as np
 
 from kitchen_prefs_robot.motion.grasps import Grasp, propose_grasps
 from kitchen_prefs_robot.motion.kinematics import kinematics, turned_over
 from kitchen_prefs_robot.motion.moves import Arm, OnFrame, joint_path, line_path
+from kitchen_prefs_robot.motion.obstacles import Obstacles
 from kitchen_prefs_robot.motion.outcomes import Outcome, Result
 from kitchen_prefs_robot.scene import World
 from kitchen_prefs_robot.scene.arm import HOME
@@ -15,7 +18,8 @@ MOST_CONFIDENT = 5  # reachable grasps, of which the most top-down is taken (the
 TRIED = 60  # grasps whose path is planned at most
 PRE_GRASP = 0.10  # m back along the approach
 LIFT = 0.12  # m straight up, until nothing on the table is in the way
-CARRY = (0.50, 0.44)  # m from the base's axis and above the table, where a pick ends
+CARRY = (0.45, 0.52)  # m from the base's axis and above the table, where a pick ends
+MOST_HELD = 100  # points that stand for what the hand holds
 EMPTY = 0.0022  # m between the fingertips: less than the thinnest dish's wall
 
 
@@ -24,12 +28,12 @@ class PickOutcome(Outcome):
     """The end of a pick.
 
     Attributes:
-        middle: The middle of the held object's box in the hand's frame, (3,) m; None without one.
-        bottom: How far its lowest point hangs below that middle, m.
+        held: Points of the object in the hand's frame, (K, 3) m; none where nothing is held.
+        way: The joints' path from the grasp to where the pick ended, (N, 7), likewise.
     """
 
-    middle: np.ndarray | None = None
-    bottom: float = 0.0
+    held: np.ndarray
+    way: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -37,9 +41,14 @@ class _Plan:
     """A grasp with the joints' paths to it and away from it."""
 
     grasp: Grasp
-    to_pre_grasp: np.ndarray
+    before: np.ndarray
     approach: np.ndarray
     lift: np.ndarray
+
+    @property
+    def path(self) -> np.ndarray:
+        """All of it."""
+        return np.concatenate([self.before, self.approach, self.lift])
 
 
 def pick(
@@ -58,47 +67,74 @@ def pick(
         otherwise.
     """
     arm, started = Arm(world, on_frame), world.data.time
-    plan = _plan(arm, points, others_points)
+    plan = _plan(arm.target, points, others_points, Obstacles(world))
     if plan is None:
-        return PickOutcome(Result.UNREACHABLE, 0.0)
+        return _nothing_held(Result.UNREACHABLE, 0.0)
     result = _execute(arm, plan)
     if result is not Result.DONE:
         arm.open_fingers()
         arm.go_home()
-        return PickOutcome(result, world.data.time - started)
-    low, high = points.min(axis=0), points.max(axis=0)
+        return _nothing_held(result, world.data.time - started)
     pose = plan.grasp.pose
-    middle = ((low + high) / 2 - pose[:3, 3]) @ pose[:3, :3]
-    return PickOutcome(result, world.data.time - started, middle, float(high[2] - low[2]) / 2)
+    held = (points[:: 1 + len(points) // MOST_HELD] - pose[:3, 3]) @ pose[:3, :3]
+    return PickOutcome(result, world.data.time - started, held, plan.lift)
 
 
-def _plan(arm: Arm, points: np.ndarray, others: np.ndarray) -> _Plan | None:
+def put_back(world: World, picked: PickOutcome, on_frame: OnFrame | None = None) -> Outcome:
+    """Put what a pick has grasped back to where it stood, for want of a place to drop it.
+
+    Args:
+        world: In which the arm has not moved since the pick.
+        picked: Its outcome.
+        on_frame: Called with the world 50 times a simulated second.
+
+    Returns:
+        How it ended; the arm is at home.
+    """
+    arm, started = Arm(world, on_frame), world.data.time
+    arrived = arm.follow(picked.way[::-1])
+    arm.open_fingers()
+    arm.follow(picked.way)
+    arm.go_home()
+    return Outcome(Result.DONE if arrived else Result.TIMED_OUT, world.data.time - started)
+
+
+def _nothing_held(result: Result, seconds: float) -> PickOutcome:
+    return PickOutcome(result, seconds, np.empty((0, 3)), np.empty((0, 7)))
+
+
+def _plan(
+    start: np.ndarray, points: np.ndarray, others: np.ndarray, obstacles: Obstacles
+) -> _Plan | None:
+    """The most top-down of the most confident grasps that the arm can reach."""
     plans: list[_Plan] = []
     for grasp in propose_grasps(points, others)[:TRIED]:
-        plan = _plan_for(arm.target, grasp)
-        if plan is not None:
-            plans.append(plan)
+        free = (plan for plan in _plans(start, grasp) if not obstacles.strikes(plan.path))
+        plans.extend(islice(free, 1))
         if len(plans) == MOST_CONFIDENT:
             break
     return min(plans, key=lambda plan: plan.grasp.tilt, default=None)
 
 
-def _plan_for(start: np.ndarray, grasp: Grasp) -> _Plan | None:
-    """The paths of a grasp, with the fingers on whichever side is closer; None out of reach."""
-    home, plans = np.array(HOME), []
+def _plans(start: np.ndarray, grasp: Grasp) -> Iterator[_Plan]:
+    """The paths to a grasp, with the fingers on the closer side first; none out of reach."""
+    home, sides = np.array(HOME), []
     for pose in (grasp.pose, turned_over(grasp.pose)):
-        before = pose.copy()
-        before[:3, 3] -= PRE_GRASP * pose[:3, 2]
-        ready = kinematics().reach(before, home)
-        if ready is None:
-            continue
+        for ready in islice(kinematics().reach(_pre_grasp(pose), home), 1):
+            sides.append((float(np.abs(ready - home).max()), pose, ready))
+    for _, pose, ready in sorted(sides, key=lambda side: side[0]):
         approach = line_path(ready, pose)
         lift = None if approach is None else line_path(approach[-1], *_lifted(pose))
-        if approach is None or lift is None:
-            continue
-        to_pre_grasp = np.concatenate([joint_path(start, home), joint_path(home, ready)])
-        plans.append(_Plan(Grasp(pose, grasp.confidence), to_pre_grasp, approach, lift))
-    return min(plans, key=lambda plan: np.abs(plan.approach[0] - home).max(), default=None)
+        if approach is not None and lift is not None:
+            before = np.concatenate([joint_path(start, home), joint_path(home, ready)])
+            yield _Plan(Grasp(pose, grasp.confidence), before, approach, lift)
+
+
+def _pre_grasp(pose: np.ndarray) -> np.ndarray:
+    """The hand's pose before it approaches, (4, 4)."""
+    before = pose.copy()
+    before[:3, 3] -= PRE_GRASP * pose[:3, 2]
+    return before
 
 
 def _lifted(pose: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -113,7 +149,7 @@ def _lifted(pose: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 def _execute(arm: Arm, plan: _Plan) -> Result:
     arm.open_fingers()
-    if not arm.follow(plan.to_pre_grasp) or not arm.follow(plan.approach):
+    if not arm.follow(plan.before) or not arm.follow(plan.approach):
         return _give_up(arm, plan)
     arm.close_fingers()
     if arm.grip < EMPTY:

@@ -30,6 +30,7 @@ def arm_spec() -> mujoco.MjSpec:
     spec = mujoco.MjSpec.from_file(str(path))
     with np.load(_simplified_meshes(path), allow_pickle=False) as meshes:
         for mesh in spec.meshes:
+            mesh.name = mesh.name or Path(mesh.file).stem  # MuJoCo 3 names them when it compiles
             _replace(mesh, meshes[f"{mesh.name} vertices"], meshes[f"{mesh.name} faces"])
     return spec
 

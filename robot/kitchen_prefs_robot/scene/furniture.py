@@ -1,6 +1,7 @@
 """The table, the cabinet with its two drawers, and the stands."""
 
 from collections.abc import Sequence
+from functools import cache
 
 import mujoco
 import numpy as np
@@ -49,9 +50,15 @@ def add_stand(spec: mujoco.MjSpec, place: tuple[float, float]) -> None:
     )
 
 
+@cache
+def _wood() -> np.ndarray:
+    """Drawn once in a process, as it takes as long as a second of physics."""
+    return walnut()
+
+
 def _add_table(spec: mujoco.MjSpec) -> None:
     """A wooden top, drawn as a mesh that carries the texture and felt as a box."""
-    picture = walnut()
+    picture = _wood()
     texture = spec.add_texture(
         name="wood",
         type=mujoco.mjtTexture.mjTEXTURE_2D,
@@ -87,7 +94,7 @@ def _add_boards(cabinet: mujoco.MjsBody) -> None:
         ((-depth, half - board, 0.0), (0.0, half, height)),
         ((-depth, -inner, 0.0), (-depth + board, inner, height)),
         ((board - depth, -inner, height - board), (0.0, inner, height)),
-        ((board - depth, -inner, 0.0), (0.0, inner, 0.03)),
+        ((board - depth, -inner, 0.0), (0.0, inner, 0.02)),
         ((board - depth, -inner, shelf - board), (-0.02, inner, shelf)),
     ):
         _add_box(cabinet, "cabinet", low, high)

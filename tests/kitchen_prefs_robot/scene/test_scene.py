@@ -9,7 +9,13 @@ import cv2
 
 from kitchen_prefs.preferences import CATEGORIES
 from kitchen_prefs_robot.scene import PAPER_DISHES, TAGS, Pictures, World, sample_scene, tag_corners
-from kitchen_prefs_robot.scene.layout import CABINET_DISTANCE, COUNTER_X, COUNTER_Y, handle_position
+from kitchen_prefs_robot.scene.layout import (
+    CABINET_DISTANCE,
+    COUNTER_X,
+    COUNTER_Y,
+    HANDLE_OUT,
+    handle_position,
+)
 from kitchen_prefs_robot.scene.tableware import real_extents
 
 
@@ -57,7 +63,7 @@ def test_a_drawer_slides(world):
     assert world.drawer_opening("upper") == pytest.approx(0.25)
     assert world.drawer_opening("lower") == pytest.approx(0.0)
     handle = np.linalg.norm(handle_position("upper", 0.25)[:2])
-    assert handle == pytest.approx(CABINET_DISTANCE - 0.25 - 0.045)
+    assert handle == pytest.approx(CABINET_DISTANCE - 0.25 - HANDLE_OUT)
     world.set_drawer("upper", 0.0)
 
 
