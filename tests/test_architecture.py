@@ -119,7 +119,11 @@ LEADERBOARD = {
     "__init__": "",
 }
 ROBOT = {
-    "task": "",
+    "task": (
+        "kitchen_prefs.datasets kitchen_prefs.envs kitchen_prefs.evaluation "
+        "kitchen_prefs.instances kitchen_prefs.metrics kitchen_prefs.preferences "
+        "kitchen_prefs.simulation kitchen_prefs.utils"
+    ),
     "scene": (
         "kitchen_prefs.physics kitchen_prefs.preferences kitchen_prefs.rendering "
         "kitchen_prefs.simulation kitchen_prefs.utils"

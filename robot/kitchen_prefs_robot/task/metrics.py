@@ -5,7 +5,7 @@ from itertools import groupby, pairwise
 
 from rapidfuzz.distance import LCSseq
 
-from kitchen_prefs.metrics import Episode
+from kitchen_prefs.metrics import Episode, Metric, edit_similarity, packing_efficiency, success
 from kitchen_prefs.simulation.kitchen import FIRST_DISH, FIRST_PLACEMENT, RACK_INSTANCE
 from kitchen_prefs_robot.task.decisions import Decision, Pick, Place, Toggle
 from kitchen_prefs_robot.task.demonstrations import demonstrate
@@ -30,6 +30,15 @@ def right_dishes(episode: Episode) -> float:
 def right_drawer(episode: Episode) -> float:
     """The share of dishes in the right drawer, in whatever order."""
     return sum(episode.placed) / sum(episode.expert_placed)
+
+
+METRICS: dict[str, Metric] = {
+    "Right": right_dishes,
+    "Drawer": right_drawer,
+    "PE": packing_efficiency,
+    "ED": edit_similarity,
+    "Success": success,
+}
 
 
 def _placements(kinds: Iterable[str], refused: Iterable[bool]) -> list[tuple[str, str]]:

@@ -84,7 +84,7 @@ class DrawerPreference:
         ]
         return f"Load {loads[0]}; then {loads[1]}."
 
-    def swapped(self) -> "DrawerPreference":
+    def opposite(self) -> "DrawerPreference":
         """The opposite preference: each category in the other drawer."""
         return DrawerPreference(self.first, self.lower, self.upper)
 

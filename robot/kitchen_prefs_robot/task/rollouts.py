@@ -24,8 +24,8 @@ def roll_out(
     sessions: Sequence[DrawersSession],
     perception: Perception = PERFECT,
     *,
-    swapped: bool = False,
-    quiet: bool = False,
+    opposite: bool = False,
+    name: str = "drawers",
 ) -> list[Episode]:
     """Roll a policy out on sessions.
 
@@ -34,17 +34,17 @@ def roll_out(
         sessions: The sessions.
         perception: How situations are seen. A prompt is seen with the same noise, but its
             categories are right: whoever shows it corrects them.
-        swapped: Whether the prompts show the opposite preference.
-        quiet: Show no progress bar.
+        opposite: Whether the prompts show the opposite preference.
+        name: What the progress bar shows.
 
     Returns:
         One episode a session.
     """
     episodes: list[Episode] = []
-    with tqdm(total=len(sessions), desc="drawers", unit="episode", disable=quiet) as bar:
+    with tqdm(total=len(sessions), desc=name, unit="episode") as bar:
         for batch in batched(sessions, BATCH_SIZE):
             simulators = [DrawersSimulator(session, perception) for session in batch]
-            prompts = [_prompt(session, perception.noise, swapped) for session in batch]
+            prompts = [_prompt(session, perception.noise, opposite) for session in batch]
             _roll_out_batch(policy, simulators, prompts)
             episodes += map(episode_of, simulators)
             bar.update(len(batch))
@@ -70,8 +70,8 @@ def policy_observation(rows: np.ndarray, prompt: np.ndarray) -> dict[str, np.nda
     return {"instances": instances.pack(rows), "prompt": prompt}
 
 
-def _prompt(session: DrawersSession, noise: float, swapped: bool) -> np.ndarray:
-    return demonstrate(prompt_session(session, swapped), Perception(noise)).prompt
+def _prompt(session: DrawersSession, noise: float, opposite: bool) -> np.ndarray:
+    return demonstrate(prompt_session(session, opposite), Perception(noise)).prompt
 
 
 def _roll_out_batch(

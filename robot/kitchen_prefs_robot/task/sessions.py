@@ -17,8 +17,8 @@ from kitchen_prefs_robot.task.preferences import LABELS, PREFERENCES, DrawerPref
 from kitchen_prefs_robot.task.state import DrawersState, SeenDish
 
 DATA_VERSION = 1  # a change that alters one session raises it
-# How many dishes the sessions of a split have, in turn. Four is the paper's scene on hardware; more in
-# training, so that what is learned is no matter of how long an episode lasts.
+# How many dishes the sessions of a split have, in turn. Four is the paper's scene on hardware; more
+# in training, so that what is learned does not depend on how long an episode lasts.
 DISHES = {"train": (4, 5, 6, 7, 8), "val": (4,), "test": (4,)}
 
 Role = Literal["situation", "prompt"]
@@ -70,16 +70,16 @@ def make_session(split: str, index: int, role: Role = "situation") -> DrawersSes
     return DrawersSession(split, index, role, label, preference, _lay(names, generator))
 
 
-def prompt_session(session: DrawersSession, swapped: bool = False) -> DrawersSession:
+def prompt_session(session: DrawersSession, opposite: bool = False) -> DrawersSession:
     """The session whose demonstration is a session's prompt.
 
     Args:
         session: The situation.
-        swapped: Whether the demonstration shows the opposite preference, each category in the other
-            drawer: the control that tells whether a policy reads its prompt.
+        opposite: Whether the demonstration shows the opposite preference, each category in the
+            other drawer: the control that tells whether a policy reads its prompt.
     """
     prompt = make_session(session.split, session.index, "prompt")
-    return replace(prompt, preference=prompt.preference.swapped()) if swapped else prompt
+    return replace(prompt, preference=prompt.preference.opposite()) if opposite else prompt
 
 
 def _generator(split: str, index: int, role: Role, purpose: str) -> np.random.Generator:

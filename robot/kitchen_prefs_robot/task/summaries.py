@@ -1,7 +1,7 @@
 """The flat summary of a state, in the columns of the kitchen's data sets.
 
-`kitchen_prefs.envs.observations` lists the columns. The open drawer is a rack that is pulled out, and
-its drop pose a free placement; there is no door.
+`kitchen_prefs.envs.observations` lists the columns. The open drawer is a rack that is pulled out,
+and its drop pose a free placement; there is no door.
 """
 
 import numpy as np
