@@ -84,16 +84,22 @@ def picks(
 @app.command()
 def drawers(
     times: Annotated[int, typer.Option(help="How often each is opened and closed.", min=1)] = 20,
+    opening_error: Annotated[
+        float,
+        typer.Option(help="m by which openings are mistaken, standard deviation.", min=0.0),
+    ] = 0.003,
 ) -> None:
     """Open and close each drawer by its handle.
 
-    Example: kitchen-prefs robot drawers --times=20
+    Example: kitchen-prefs robot drawers --times=20 --opening-error=0.003
     """
     from kitchen_prefs_robot.motion.trials import move_drawers
     from kitchen_prefs_robot.scene.layout import DRAWERS
 
-    for drawer in tqdm(DRAWERS, "Moving drawers"):
-        counts = move_drawers(drawer, times)
+    counts = [
+        move_drawers(drawer, times, opening_error) for drawer in tqdm(DRAWERS, "Moving drawers")
+    ]
+    for drawer, count in zip(DRAWERS, counts, strict=True):
         typer.echo(
-            f"{drawer}: opened {counts['opened']} of {times}, closed {counts['closed']} of {times}"
+            f"{drawer}: opened {count['opened']} of {times}, closed {count['closed']} of {times}"
         )

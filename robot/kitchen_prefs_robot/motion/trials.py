@@ -49,13 +49,23 @@ def _state(world: World) -> np.ndarray:
     return state
 
 
-def move_drawers(drawer: str, times: int) -> Counter[str]:
-    """Open and close a drawer; how often it was truly opened and closed."""
-    counts: Counter[str] = Counter(opened=0, closed=0)
+def move_drawers(drawer: str, times: int, opening_error: float) -> Counter[str]:
+    """Open and close a drawer.
+
+    Args:
+        drawer: "upper" or "lower".
+        times: Each in another scene.
+        opening_error: m by which its opening is mistaken each time, standard deviation.
+
+    Returns:
+        How often it was truly "opened" and "closed".
+    """
+    rng, counts = np.random.default_rng(0), Counter(opened=0, closed=0)
     for seed in range(times):
         world = World(sample_scene(seed))
-        open_drawer(world, drawer)
+        open_drawer(world, drawer, opening=rng.normal(0.0, opening_error))
         counts["opened"] += world.drawer_opening(drawer) > OPENED
-        close_drawer(world, drawer)
+        seen = world.drawer_opening(drawer) + rng.normal(0.0, opening_error)
+        close_drawer(world, drawer, opening=seen)
         counts["closed"] += world.drawer_opening(drawer) < CLOSED
     return counts
