@@ -129,7 +129,7 @@ ROBOT = {
         "kitchen_prefs.simulation kitchen_prefs.utils"
     ),
     "motion": "scene kitchen_prefs.rendering",
-    "commands": "motion scene kitchen_prefs.metrics",
+    "commands": "motion scene task kitchen_prefs.evaluation kitchen_prefs.metrics",
     "__init__": "",
 }
 

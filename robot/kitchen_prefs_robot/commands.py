@@ -12,21 +12,28 @@ from rich.console import Console
 from rich.table import Table
 from tqdm import tqdm
 
+from kitchen_prefs.evaluation.policy_options import ANY_SETTING
 from kitchen_prefs.metrics import wilson
+from kitchen_prefs_robot.task.commands import data, task
 
 app = typer.Typer(
     name="robot", help="A simulated arm that loads two drawers.", no_args_is_help=True
 )
+app.command(context_settings=ANY_SETTING)(task)
+app.command()(data)
 console = Console()
+WITHOUT_ROBOT = ("task", "data")  # commands that need no arm
 
 
 @app.callback()
-def require_robot() -> None:
-    """Make sure that the extra `robot` is installed.
+def require_robot(context: typer.Context) -> None:
+    """Make sure that the extra `robot` is installed, where a command needs it.
 
     Raises:
         OSError: If it is not; the message says how to install it.
     """
+    if context.invoked_subcommand in WITHOUT_ROBOT:
+        return
     if not all(map(find_spec, ("mujoco", "gym_hil", "mink", "fast_simplification"))):
         raise OSError(
             "The robot needs MuJoCo, its arm and its kinematics: "
