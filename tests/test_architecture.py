@@ -136,7 +136,8 @@ ROBOT = {
         "kitchen_prefs.simulation kitchen_prefs.utils"
     ),
     "commands": (
-        "demonstrations motion perception scene kitchen_prefs.metrics kitchen_prefs.rendering"
+        "demonstrations motion perception scene task kitchen_prefs.evaluation "
+        "kitchen_prefs.metrics kitchen_prefs.rendering"
     ),
     "__init__": "",
 }

@@ -3,7 +3,11 @@
 import pytest
 from typer.testing import CliRunner
 
-from kitchen_prefs_robot.task.commands import app
+from kitchen_prefs.cli import command_line
+
+
+def run(*arguments):
+    return CliRunner().invoke(command_line(), ["robot", *arguments])
 
 
 @pytest.mark.parametrize(
@@ -15,11 +19,11 @@ from kitchen_prefs_robot.task.commands import app
     ],
 )
 def test_bad_input_is_one_sentence(arguments, sentence):
-    error = CliRunner().invoke(app, ["task", "--sessions=1", *arguments]).exception
+    error = run("task", "--sessions=1", *arguments).exception
     assert isinstance(error, (ValueError, OSError))
     assert sentence in str(error)
 
 
 @pytest.mark.parametrize("command", ["task", "data"])
 def test_help_has_an_example(command):
-    assert "Example: kitchen-prefs robot" in CliRunner().invoke(app, [command, "--help"]).output
+    assert "Example: kitchen-prefs robot" in run(command, "--help").output
