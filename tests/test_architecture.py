@@ -119,7 +119,11 @@ LEADERBOARD = {
     "__init__": "",
 }
 ROBOT = {
-    "task": "",
+    "task": (
+        "kitchen_prefs.datasets kitchen_prefs.envs kitchen_prefs.evaluation "
+        "kitchen_prefs.instances kitchen_prefs.metrics kitchen_prefs.preferences "
+        "kitchen_prefs.simulation kitchen_prefs.utils"
+    ),
     "scene": (
         "kitchen_prefs.physics kitchen_prefs.preferences kitchen_prefs.rendering "
         "kitchen_prefs.simulation kitchen_prefs.utils"
@@ -130,6 +134,18 @@ ROBOT = {
     "demonstrations": (
         "perception real_to_sim scene task kitchen_prefs.datasets kitchen_prefs.instances "
         "kitchen_prefs.simulation kitchen_prefs.utils"
+    ),
+    "execution": (
+        "demonstrations motion perception real_to_sim scene task kitchen_prefs.envs "
+        "kitchen_prefs.evaluation kitchen_prefs.instances kitchen_prefs.metrics "
+        "kitchen_prefs.simulation kitchen_prefs.utils"
+    ),
+    "lerobot": (
+        "demonstrations execution scene kitchen_prefs.envs kitchen_prefs.utils"
+    ),
+    "commands": (
+        "demonstrations execution motion perception scene task kitchen_prefs.evaluation "
+        "kitchen_prefs.metrics kitchen_prefs.rendering"
     ),
     "__init__": "",
 }

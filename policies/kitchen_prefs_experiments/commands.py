@@ -6,6 +6,7 @@ from typing import Annotated
 
 import typer
 
+from kitchen_prefs.datasets.names import dataset_root
 from kitchen_prefs.evaluation.policy_options import ANY_SETTING
 from kitchen_prefs_experiments import checkpoints
 from kitchen_prefs_experiments.recipes import recipe_file, training_data, training_recipes
@@ -19,6 +20,7 @@ app.add_typer(group)
 Name = Annotated[str, typer.Argument(help="Such as ttp_quick.")]
 DATASET_OPTION = "--dataset.repo_id="
 OWN_DATA = "kitchen_prefs/"
+DRAWERS_DATA = "kitchen_prefs/drawers-"  # the robot's, which only its own package can make
 
 
 @app.command(context_settings=ANY_SETTING)
@@ -40,13 +42,26 @@ def train(
     from kitchen_prefs_experiments.lerobot_train import TrainingRun
 
     data = _last_value(context.args, DATASET_OPTION) or training_data(recipe)
-    if data.startswith(OWN_DATA):
+    if data.startswith(DRAWERS_DATA):
+        _check_is_made(data)
+    elif data.startswith(OWN_DATA):
         make_dataset(data)
     run = TrainingRun(out)
     options = " ".join([f"--output_dir={out}", *context.args])
     typer.echo(f"lerobot-train --config_path={recipe_file(recipe)} {options}")
     run.train(recipe, context.args)
     typer.echo(f"The last checkpoint is {run.checkpoint}.")
+
+
+def _check_is_made(data: str) -> None:
+    """Make sure that the robot's data set is there.
+
+    Raises:
+        ValueError: If it is not.
+    """
+    root = dataset_root(data.removeprefix(OWN_DATA))
+    if not root.is_dir():
+        raise ValueError(f"{data} is not in {root.parent}; `kitchen-prefs robot data` makes it.")
 
 
 def _last_value(arguments: list[str], option: str) -> str | None:

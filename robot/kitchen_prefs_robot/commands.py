@@ -12,10 +12,13 @@ from rich.console import Console
 from rich.table import Table
 from tqdm import tqdm
 
+from kitchen_prefs.evaluation.policy_options import ANY_SETTING
 from kitchen_prefs.metrics import wilson
+from kitchen_prefs.rendering.opengl import NoOpenGLError
 from kitchen_prefs_robot.demonstrations.commands import demonstrate
 from kitchen_prefs_robot.execution.commands import run, table
 from kitchen_prefs_robot.perception.commands import perception
+from kitchen_prefs_robot.task.commands import data, task
 
 app = typer.Typer(
     name="robot", help="A simulated arm that loads two drawers.", no_args_is_help=True
@@ -24,21 +27,32 @@ app.command()(perception)
 app.command()(demonstrate)
 app.command()(run)
 app.command()(table)
+app.command(context_settings=ANY_SETTING)(task)
+app.command()(data)
 console = Console()
+ROBOT_MODULES = ("mujoco", "gym_hil", "mink", "fast_simplification", "sklearn")
+WITHOUT_ROBOT = ("task", "data")  # commands that need no arm
 
 
 @app.callback()
-def require_robot() -> None:
-    """Make sure that the extra `robot` is installed.
+def require_robot(context: typer.Context) -> None:
+    """Make sure that the extra `robot` is installed, where a command needs it.
 
     Raises:
-        OSError: If it is not; the message says how to install it.
+        OSError: If it is not, or if `MUJOCO_GL` names an OpenGL that is not there; the message says
+            what to install.
     """
-    if not all(map(find_spec, ("mujoco", "gym_hil", "mink", "fast_simplification"))):
+    if context.invoked_subcommand in WITHOUT_ROBOT:
+        return
+    if not all(map(find_spec, ROBOT_MODULES)):
         raise OSError(
             "The robot needs MuJoCo, its arm and its kinematics: "
             "`pip install 'lerobot_policy_kitchen_prefs[robot]'`. Everything else works without it."
         )
+    try:
+        import mujoco  # noqa: F401
+    except (ImportError, AttributeError) as error:  # with MUJOCO_GL set it loads OpenGL at once
+        raise NoOpenGLError from error
 
 
 @app.command()

@@ -12,16 +12,26 @@ from typing import TYPE_CHECKING, Annotated, Literal
 import typer
 from tqdm import tqdm
 
+from kitchen_prefs.datasets.names import dataset_root
+
 if TYPE_CHECKING:
     from kitchen_prefs_robot.demonstrations.recording import HumanDemonstration
 
 
+# Of the published data set; no experiment uses these scenes.
+SCENES, PREFERENCES = range(900, 905), range(4)
+
+
 def demonstrate(
-    out: Annotated[Path, typer.Option(help="Folder of the data set that is made.")],
-    scene: Annotated[list[int], typer.Option(min=0, help="Seed of the scene; may be repeated.")],
+    out: Annotated[
+        Path | None, typer.Option(help="Folder of the data set; by default LeRobot's for it.")
+    ] = None,
+    scene: Annotated[
+        list[int], typer.Option(min=0, help="Seed of the scene; may be repeated.")
+    ] = list(SCENES),  # noqa: B006 (typer copies it)
     preference: Annotated[
         list[int], typer.Option(help="Number of the preference, 0 to 3; may be repeated.")
-    ],
+    ] = list(PREFERENCES),  # noqa: B006
     colours: Annotated[
         Literal["distinct", "alike"], typer.Option(help="Of the dishes.")
     ] = "distinct",
@@ -32,12 +42,17 @@ def demonstrate(
 ) -> None:
     """Record human demonstrations as a LeRobot data set, one for each scene and preference.
 
+    Without options it makes the published one: four preferences, five scenes each.
+
     Example: kitchen-prefs robot demonstrate --scene=3 --preference=0 --out=demonstration
     """
     os.environ.setdefault("SVT_LOG", "1")  # the video encoder's errors alone
+    from kitchen_prefs_robot.demonstrations.preferences import human_preference
     from kitchen_prefs_robot.demonstrations.recording import record
-    from kitchen_prefs_robot.demonstrations.storage import write_demonstrations
+    from kitchen_prefs_robot.demonstrations.storage import NAME, write_demonstrations
 
+    for number in preference:
+        human_preference(number)
     misread: list[int] = []
 
     def recorded() -> "Iterator[HumanDemonstration]":
@@ -47,8 +62,9 @@ def demonstrate(
             misread.append(shown.misread)
             yield shown
 
-    write_demonstrations(recorded(), out)
+    root = out or dataset_root(NAME)
+    write_demonstrations(recorded(), root)
     typer.echo(
-        f"{len(misread)} demonstrations are in {out}; {sum(misread)} dishes in hand were taken for "
-        "another category."
+        f"{len(misread)} demonstrations are in {root}; {sum(misread)} dishes in hand were taken "
+        "for another category."
     )

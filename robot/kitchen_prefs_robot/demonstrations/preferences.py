@@ -20,6 +20,6 @@ def human_preference(number: int) -> DrawerPreference:
         ValueError: If there is none with this number.
     """
     if not 0 <= number < len(HUMAN_PREFERENCES):
-        listed = "; ".join(f"{i}: {p.in_words}" for i, p in enumerate(HUMAN_PREFERENCES))
-        raise ValueError(f"There is no preference {number} to demonstrate; there are {listed}")
+        listed = " ".join(f"{i}: {p.in_words}" for i, p in enumerate(HUMAN_PREFERENCES))
+        raise ValueError(f"There is no preference {number} to demonstrate. There are {listed}")
     return HUMAN_PREFERENCES[number]

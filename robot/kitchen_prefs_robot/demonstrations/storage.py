@@ -16,7 +16,7 @@ import pyarrow.parquet as pq
 
 from kitchen_prefs import instances
 from kitchen_prefs.datasets.columns import FEATURES, FPS, SETS, flat_numbers
-from kitchen_prefs.utils.files import at_work_alone, atomic_folder, write_json
+from kitchen_prefs.utils.files import at_work_alone, atomic_folder, make_folder, write_json
 from kitchen_prefs_robot.demonstrations.preferences import human_preference
 from kitchen_prefs_robot.demonstrations.recording import SIZE, HumanDemonstration
 from kitchen_prefs_robot.task.rows import prompt_of
@@ -25,6 +25,7 @@ NAME = "drawers-human-v1"
 REPO_ID = f"kitchen_prefs/{NAME}"
 ROBOT_TYPE = "franka_panda"
 MADE_OF = Path("meta") / "demonstrations.json"
+CARD = Path(__file__).with_name("card.md")
 COLUMNS = (SETS, "action", "chosen_index", "preference", "next.done")
 
 
@@ -37,14 +38,16 @@ def write_demonstrations(demonstrations: Iterable[HumanDemonstration], root: Pat
 
     Raises:
         ValueError: If the folder holds something already, or a demonstration is none.
+        OSError: If the folder cannot be written.
     """
     if root.exists() and (not root.is_dir() or any(root.iterdir())):
         raise ValueError(f"{root} holds something already; give another --out.")
-    root.parent.mkdir(parents=True, exist_ok=True)
+    make_folder(root.parent, "--out")
     with at_work_alone(root), atomic_folder(root) as unfinished:
         unfinished.rmdir()  # LeRobot makes it
         made_of = _write(demonstrations, unfinished)
         write_json(unfinished / MADE_OF, {"episodes": made_of})
+        (unfinished / "README.md").write_text(CARD.read_text())
 
 
 def read_prompt(root: Path, episode: int = 0) -> np.ndarray:

@@ -13,7 +13,7 @@ from kitchen_prefs_robot.scene.layout import (
 
 BIN = 0.01  # m: a front's points lie within twice that
 SIDE_MARGIN = 0.03  # m from the front's ends, where the walls' points are
-FEWEST_POINTS = 60  # of a front in pictures of 160 x 120; its cameras see some 1,500 at 320 x 240
+FEWEST_POINTS = 60  # of a front: the cameras see a thousand and more at 320 x 240
 
 
 def drawer_opening(cloud: Cloud, drawer: str) -> float:

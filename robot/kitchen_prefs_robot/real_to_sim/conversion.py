@@ -26,7 +26,9 @@ def to_drawers_state(
 
     Returns:
         The state in the kitchen's frame. A dish on the table, or on a stand, stands on the counter;
-        one in a drawer has the drop pose; one that a person holds is the dish in hand.
+        one in a drawer has the drop pose; one that a person holds is the dish in hand. (What the
+        arm holds is not seen but felt: leave the detections of the hand out, and replace
+        `in_hand`.)
     """
     detections = list(detections)
     held = [nearest_category(found) for found in detections if found.place == "hand"]

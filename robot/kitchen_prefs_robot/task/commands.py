@@ -9,13 +9,11 @@ import typer
 from rich.console import Console
 from rich.table import Table
 
-from kitchen_prefs.evaluation.policy_options import ANY_SETTING, settings_of
+from kitchen_prefs.evaluation.policy_options import settings_of
 
-app = typer.Typer()
 console = Console()
 
 
-@app.command(context_settings=ANY_SETTING)
 def task(
     context: typer.Context,
     path: Annotated[
@@ -51,7 +49,6 @@ def task(
     console.print(table)
 
 
-@app.command()
 def data() -> None:
     """Make the demonstrations that `policies/recipes/ttp_drawers.yaml` trains on.
 

@@ -16,6 +16,7 @@ from kitchen_prefs.utils.suggestions import suggest
 from kitchen_prefs_robot.task.state import DRAWERS
 
 FEWEST_CATEGORIES, MOST_CATEGORIES = 2, 4  # of four dishes, as the paper's hardware has them
+PAPER_CATEGORIES = {"small bowl", "big bowl", "cup", "small plate"}
 
 Partition = tuple[tuple[str, ...], tuple[str, ...]]
 
@@ -111,11 +112,13 @@ def _draw(partition: Partition, generator: np.random.Generator) -> DrawerPrefere
 
 def _all_preferences() -> tuple[DrawerPreference, ...]:
     generator = np.random.default_rng(0)
-    known = partitions()
-    return tuple(_draw(known[i], generator) for i in generator.permutation(len(known)))
+    shuffled = [partitions()[i] for i in generator.permutation(len(partitions()))]
+    shuffled.sort(key=lambda sides: set(sides[0] + sides[1]) != PAPER_CATEGORIES)
+    return tuple(_draw(partition, generator) for partition in shuffled)
 
 
-# One preference for each of the 371 partitions, in random order; its number here is its label.
+# One preference for each of the 371 partitions; its number here is its label. Those of the paper's
+# dishes come first, so that training sees none of them; the others are in random order.
 PREFERENCES = _all_preferences()
 LABELS = {
     "test": range(100),

@@ -5,9 +5,13 @@ import pytest
 
 pytest.importorskip("gym_hil", reason="needs the extra `robot`")
 
+from PIL import Image
+from typer.testing import CliRunner
+
 from kitchen_prefs.rendering.opengl import NoOpenGLError
+from kitchen_prefs_robot.commands import app
 from kitchen_prefs_robot.perception.calibration import pose_error
-from kitchen_prefs_robot.perception.cameras import Cameras, laboratory_poses
+from kitchen_prefs_robot.perception.cameras import Cameras, calibrate, laboratory_poses
 from kitchen_prefs_robot.perception.detection import perceive
 from kitchen_prefs_robot.perception.known_dishes import known_dishes
 from kitchen_prefs_robot.perception.pictures import beside_clusters
@@ -126,3 +130,20 @@ def test_a_trial_counts_what_was_found(poses):
     assert confusion([trial]) == {(category, category): 1 for category in PAPER_DISHES}
     assert np.abs(trial.opening_error) < 0.01
     assert trial.camera_errors.shape == (3, 2)
+
+
+def test_the_command_prints_a_confusion_matrix_and_saves_a_picture(poses, tmp_path):
+    path = tmp_path / "clusters.png"
+    result = CliRunner().invoke(app, ["perception", "--scenes=1", "--lamp=0", f"--picture={path}"])
+    assert result.exit_code == 0, result.output
+    assert "Scenes without any mistake: 1 of 1" in result.output
+    assert np.asarray(Image.open(path)).shape == (3 * 240, 2 * 320, 3)
+
+
+def test_without_opengl_it_is_one_sentence(monkeypatch):
+    def nothing(*_):
+        raise NoOpenGLError
+
+    monkeypatch.setattr("kitchen_prefs_robot.scene.pictures.open_context", nothing)
+    with pytest.raises(NoOpenGLError, match="apt install"):
+        calibrate(World(sample_scene(0)))

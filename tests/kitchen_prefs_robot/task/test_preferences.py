@@ -28,6 +28,16 @@ def test_the_splits_have_no_partition_in_common_and_leave_none_out():
     assert sorted(labels) == list(range(len(PREFERENCES)))
 
 
+def test_no_partition_of_the_paper_s_dishes_is_seen_in_training():
+    labels = [
+        label
+        for label, preference in enumerate(PREFERENCES)
+        if set(preference.categories) == {"small bowl", "big bowl", "cup", "small plate"}
+    ]
+    assert len(labels) == 7
+    assert set(labels) <= set(LABELS["test"])
+
+
 @pytest.mark.parametrize("split", LABELS)
 def test_each_split_has_all_categories_in_both_drawers_and_both_orders_of_drawers(split):
     chosen = [PREFERENCES[label] for label in LABELS[split]]
