@@ -17,9 +17,11 @@ from kitchen_prefs.instances import IS_PLACE
 from kitchen_prefs_experiments.checkpoints import checkpoints_folder
 from kitchen_prefs_experiments.recipes import recipe_file, training_data
 from kitchen_prefs_robot.task import dataset
+from kitchen_prefs_robot.task.preferences import LABELS
 from kitchen_prefs_robot.task.sessions import DISHES, make_session
 
 SESSIONS = 12
+PREFERENCES = len(LABELS["train"])
 
 
 @pytest.fixture(scope="module")
@@ -39,8 +41,8 @@ def home(made_once):
 def some():
     """Two sessions of each of six preferences, so that each has a prompt in the other."""
     labels = dataset.SESSIONS // 2
-    first = [make_session("train", index) for index in range(labels)]
-    return first + [make_session("train", 231 + index) for index in range(labels)]
+    turns = (0, PREFERENCES)
+    return [make_session("train", turn + index) for turn in turns for index in range(labels)]
 
 
 @pytest.fixture
@@ -65,7 +67,7 @@ def test_the_columns_say_the_same_as_the_sets(root):
 
 
 def test_the_full_data_set_has_each_preference_with_each_number_of_dishes():
-    sessions = [make_session("train", index) for index in range(0, dataset.SESSIONS, 231)]
+    sessions = [make_session("train", index) for index in range(0, dataset.SESSIONS, PREFERENCES)]
     assert tuple(len(session.start.dishes) for session in sessions) == DISHES["train"]
     assert len({session.label for session in sessions}) == 1
 
