@@ -51,24 +51,26 @@ def picks(
 ) -> None:
     """Pick single dishes: with points on all of their surface, and as three cameras see them.
 
-    A pick succeeds where the dish hangs in the hand at its end. Each is of another scene.
+    A pick succeeds where the dish hangs in the hand at its end. Each scene has all four dishes, and
+    each is picked from it once.
 
     Example: kitchen-prefs robot picks --picks=100 --pose-error=0.0
     """
     from kitchen_prefs_robot.motion.seen_points import exact_points, seen_points
-    from kitchen_prefs_robot.motion.trials import pick_often
-    from kitchen_prefs_robot.scene import PAPER_DISHES
+    from kitchen_prefs_robot.motion.trials import pick_each
 
-    table = Table("dish", "points", "picked", "share [95 %]", "what the arm felt")
-    for number, category in enumerate(PAPER_DISHES):
-        for name, points_of in (("exact", exact_points), ("as seen", seen_points)):
-            trials = pick_often(number, picks, points_of, pose_error)
-            results = list(tqdm(trials, f"{category}, {name}", picks))
-            picked = sum(lifted for lifted, _ in results)
-            felt = Counter(result for _, result in results).most_common()
+    table = Table("points", "dish", "picked", "share [95 %]", "what the arm felt")
+    for name, points_of in (("exact", exact_points), ("as seen", seen_points)):
+        scenes = [
+            pick_each(seed, points_of, pose_error)
+            for seed in tqdm(range(picks), f"Picking by {name} points")
+        ]
+        for category in scenes[0]:
+            picked = sum(scene[category][0] for scene in scenes)
+            felt = Counter(scene[category][1] for scene in scenes).most_common()
             table.add_row(
-                category,
                 name,
+                category,
                 f"{picked} of {picks}",
                 str(wilson(picked, picks)),
                 ", ".join(f"{count} {result}" for result, count in felt),
@@ -79,16 +81,22 @@ def picks(
 @app.command()
 def drawers(
     times: Annotated[int, typer.Option(help="How often each is opened and closed.", min=1)] = 20,
+    opening_error: Annotated[
+        float,
+        typer.Option(help="m by which openings are mistaken, standard deviation.", min=0.0),
+    ] = 0.003,
 ) -> None:
     """Open and close each drawer by its handle.
 
-    Example: kitchen-prefs robot drawers --times=20
+    Example: kitchen-prefs robot drawers --times=20 --opening-error=0.003
     """
     from kitchen_prefs_robot.motion.trials import move_drawers
     from kitchen_prefs_robot.scene.layout import DRAWERS
 
-    for drawer in tqdm(DRAWERS, "Moving drawers"):
-        counts = move_drawers(drawer, times)
+    counts = [
+        move_drawers(drawer, times, opening_error) for drawer in tqdm(DRAWERS, "Moving drawers")
+    ]
+    for drawer, count in zip(DRAWERS, counts, strict=True):
         typer.echo(
-            f"{drawer}: opened {counts['opened']} of {times}, closed {counts['closed']} of {times}"
+            f"{drawer}: opened {count['opened']} of {times}, closed {count['closed']} of {times}"
         )

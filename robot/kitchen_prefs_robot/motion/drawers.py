@@ -17,15 +17,16 @@ from kitchen_prefs_robot.scene.layout import (
     handle_position,
 )
 
-# Of the hand from straight down. At 60 degrees the elbow cannot follow, at 40 a finger strikes the
-# drawer's front.
-TILT = np.deg2rad(50.0)
+# The hand's tilt from straight down, where a drawer is closed and where it is open: it turns about
+# the round bar as it pulls, because a tilted hand would have to go behind the arm's own base.
+TILTS = np.deg2rad([40.0, 30.0])
+HALF_OPEN = 128.0  # the gripper's control, 43 mm: opened wide, a finger would push at the front
 PRE_GRASP = 0.06  # m back along the approach
 LETTING_GO = 0.05  # m back until the fingers are off the handle
 RETREAT_DISTANCE = 0.42  # m from the base's axis
 RETREAT_HEIGHT = 0.46  # m: above both handles, where a sweep to the side moves no open drawer
 OPENED = 0.24  # m: what counts as open
-SHUT = 0.004  # m: what counts as closed
+SHUT = 0.006  # m: what counts as closed
 HELD = (0.6 * 2 * HANDLE_RADIUS, 1.8 * 2 * HANDLE_RADIUS)  # m between fingers that hold a handle
 
 
@@ -51,39 +52,45 @@ class _Plan:
         )
 
 
-def open_drawer(world: World, drawer: str, on_frame: OnFrame | None = None) -> Outcome:
+def open_drawer(
+    world: World, drawer: str, on_frame: OnFrame | None = None, opening: float | None = None
+) -> Outcome:
     """Pull a drawer open.
 
     Args:
         world: In which the arm moves; its hand is empty.
         drawer: "upper" or "lower". One that is open already stays so, and nothing moves.
         on_frame: Called with the world 50 times a simulated second.
+        opening: How far the drawer is open as cameras see it, m; by default as it truly is.
 
     Returns:
         How it ended; the arm is at home.
     """
-    if world.drawer_opening(drawer) > OPENED:
+    opening = world.drawer_opening(drawer) if opening is None else max(opening, 0.0)
+    if opening > OPENED:
         return Outcome(Result.DONE, 0.0)
-    return _slide(world, drawer, DRAWER_TRAVEL, on_frame)
+    return _slide(Arm(world, on_frame), drawer, opening, DRAWER_TRAVEL)
 
 
-def close_drawer(world: World, drawer: str, on_frame: OnFrame | None = None) -> Outcome:
+def close_drawer(
+    world: World, drawer: str, on_frame: OnFrame | None = None, opening: float | None = None
+) -> Outcome:
     """Push a drawer shut; as `open_drawer`."""
-    if world.drawer_opening(drawer) < SHUT:
+    opening = world.drawer_opening(drawer) if opening is None else max(opening, 0.0)
+    if opening < SHUT:
         return Outcome(Result.DONE, 0.0)
-    return _slide(world, drawer, 0.0, on_frame)
+    return _slide(Arm(world, on_frame), drawer, opening, 0.0)
 
 
-def _slide(world: World, drawer: str, goal: float, on_frame: OnFrame | None) -> Outcome:
-    arm, started = Arm(world, on_frame), world.data.time
-    opening = world.drawer_opening(drawer)
-    obstacles = Obstacles(world)
-    plan = _plan(arm.target, _at_handle(drawer, opening), _at_handle(drawer, goal), obstacles)
+def _slide(arm: Arm, drawer: str, opening: float, goal: float) -> Outcome:
+    started = arm.world.data.time
+    at_handle, moved = _at_handle(drawer, opening), _at_handle(drawer, goal)
+    plan = _plan(arm.target, at_handle, moved, Obstacles(arm.world))
     if plan is None:
         return Outcome(Result.UNREACHABLE, 0.0)
     result = _execute(arm, plan)
     arm.go_home()
-    return Outcome(result, world.data.time - started)
+    return Outcome(result, arm.world.data.time - started)
 
 
 def _plan(
@@ -106,7 +113,8 @@ def _plan(
 
 def _at_handle(drawer: str, opening: float) -> np.ndarray:
     """The hand's pose, (4, 4), with a finger above the handle and one below it."""
-    approach = CABINET_ROTATION.apply((-np.sin(TILT), 0.0, -np.cos(TILT)))
+    tilt = np.interp(opening, (0.0, DRAWER_TRAVEL), TILTS)
+    approach = CABINET_ROTATION.apply((-np.sin(tilt), 0.0, -np.cos(tilt)))
     bar = CABINET_ROTATION.apply((0.0, 1.0, 0.0))
     return hand_pose(handle_position(drawer, opening), approach, np.cross(approach, bar))
 
@@ -127,22 +135,22 @@ def _away(pose: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _execute(arm: Arm, plan: _Plan) -> Result:
-    arm.open_fingers()
+    arm.open_fingers(HALF_OPEN)
     if not arm.follow(plan.before) or not arm.follow(plan.approach):
         arm.follow(joint_path(arm.target, plan.before[-1]))
         return Result.TIMED_OUT
     arm.close_fingers()
     if not _holds(arm):
-        arm.open_fingers()
+        arm.open_fingers(HALF_OPEN)
         arm.follow(plan.approach[::-1])
         return Result.MISSED
     if arm.follow(plan.slide):
         held = _holds(arm)
-        arm.open_fingers()
+        arm.open_fingers(HALF_OPEN)
         arm.follow(plan.retreat)
         return Result.DONE if held else Result.JAMMED
     arm.follow(joint_path(arm.target, arm.joints))  # it has stopped on its way: let go there
-    arm.open_fingers()
+    arm.open_fingers(HALF_OPEN)
     path = line_path(arm.target, *_away(kinematics().pose(arm.target)))
     if path is not None:
         arm.follow(path)

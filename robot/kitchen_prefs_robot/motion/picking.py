@@ -150,7 +150,8 @@ def _lifted(pose: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 def _execute(arm: Arm, plan: _Plan) -> Result:
     arm.open_fingers()
     if not arm.follow(plan.before) or not arm.follow(plan.approach):
-        return _give_up(arm, plan)
+        arm.follow(joint_path(arm.target, plan.before[-1]))  # back out as it came
+        return Result.TIMED_OUT
     arm.close_fingers()
     if arm.grip < EMPTY:
         arm.open_fingers()
@@ -159,10 +160,3 @@ def _execute(arm: Arm, plan: _Plan) -> Result:
     if not arm.follow(plan.lift):
         return Result.TIMED_OUT
     return Result.DONE if arm.grip > EMPTY else Result.DROPPED
-
-
-def _give_up(arm: Arm, plan: _Plan) -> Result:
-    """Back out on the way on which it came."""
-    back = joint_path(arm.target, plan.approach[0])
-    arm.follow(back)
-    return Result.TIMED_OUT

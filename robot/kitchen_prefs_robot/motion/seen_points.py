@@ -1,4 +1,4 @@
-"""Points of one dish and of all else, exact or as cameras see them, for trials of single picks.
+"""Points of a dish and of all else, exact or as cameras see them, for trials of single picks.
 
 Which points belong to the dish is known here; to find that out is perception's work.
 """
@@ -10,6 +10,8 @@ from kitchen_prefs.rendering.tableware import surface
 from kitchen_prefs_robot.scene import Pictures, World
 from kitchen_prefs_robot.scene.layout import COUNTER_X, COUNTER_Y
 from kitchen_prefs_robot.scene.tableware import SCALES, SIDES, real_extents
+
+Points = tuple[np.ndarray, np.ndarray]  # of a dish and of all else
 
 COUNT = 1500  # points on the whole surface of a dish
 WIDTH, HEIGHT = 320, 240  # pixels of the pictures: one is 4 mm wide on the table
@@ -23,28 +25,25 @@ REGION = np.array(
 )
 
 
-def exact_points(
-    world: World, number: int, rng: np.random.Generator
-) -> tuple[np.ndarray, np.ndarray]:
-    """Points on the whole surface of a dish, where it truly is, and of all others.
+def exact_points(world: World, rng: np.random.Generator) -> list[Points]:
+    """Points on the whole surface of each dish, where it truly is.
 
     Args:
         world: As it stands.
-        number: The dish's place in the scene's list.
         rng: Draws the points.
 
     Returns:
-        (N, 3) and (M, 3) m in the base's frame.
+        For each dish its points, (N, 3) m in the base's frame, and those of all others, (M, 3).
     """
-    clouds = [_surface_points(world, other, rng) for other in range(len(world.scene.dishes))]
-    own = clouds.pop(number)
-    return own, np.concatenate([np.empty((0, 3)), *clouds])
+    clouds = [_surface_points(world, number, rng) for number in range(len(world.scene.dishes))]
+    return [
+        (own, np.concatenate([np.empty((0, 3)), *clouds[:number], *clouds[number + 1 :]]))
+        for number, own in enumerate(clouds)
+    ]
 
 
-def seen_points(
-    world: World, number: int, rng: np.random.Generator
-) -> tuple[np.ndarray, np.ndarray]:
-    """What the three cameras see of a dish and of all else, with noise; as `exact_points`.
+def seen_points(world: World, rng: np.random.Generator) -> list[Points]:
+    """What the three cameras see of each dish and of all else, with noise; as `exact_points`.
 
     Raises:
         NoOpenGLError: If there is no OpenGL library to draw with.
@@ -54,12 +53,17 @@ def seen_points(
     cloud = cloud[((cloud > REGION[0]) & (cloud < REGION[1])).all(axis=1)]
     _, kept = np.unique(np.floor(cloud / VOXEL), axis=0, return_index=True)
     cloud = cloud[kept]
+    noisy = cloud + rng.normal(0.0, NOISE, cloud.shape) + rng.normal(0.0, OFFSET, 3)
+    owns = [_within(world, number, cloud) for number in range(len(world.scene.dishes))]
+    return [(noisy[own], noisy[~own]) for own in owns]
+
+
+def _within(world: World, number: int, cloud: np.ndarray) -> np.ndarray:
+    """Which points, (N, 3), lie in the box of a dish where it truly is, (N,) bool."""
     position, quaternion = world.dish_pose(number)
     local = Rotation.from_quat(quaternion, scalar_first=True).inv().apply(cloud - position)
     half = real_extents(world.scene.dishes[number].category) / 2 + SLACK
-    own = (np.abs(local) < half).all(axis=1)
-    cloud = cloud + rng.normal(0.0, NOISE, cloud.shape) + rng.normal(0.0, OFFSET, 3)
-    return cloud[own], cloud[~own]
+    return (np.abs(local) < half).all(axis=1)
 
 
 def _surface_points(world: World, number: int, rng: np.random.Generator) -> np.ndarray:
