@@ -21,6 +21,7 @@ from kitchen_prefs_robot.task.preferences import LABELS
 from kitchen_prefs_robot.task.sessions import DISHES, make_session
 
 SESSIONS = 12
+FINGERPRINT = "dd08c759f0dd4481bdd12f591750689aa02d368811a50eb7e8ac081b83ea9c96"
 PREFERENCES = len(LABELS["train"])
 
 
@@ -48,6 +49,10 @@ def some():
 @pytest.fixture
 def root(home):
     return home / "kitchen_prefs" / dataset.NAME
+
+
+def test_the_sessions_are_those_that_the_checkpoint_was_trained_on(root):
+    assert read_manifest(dataset.NAME, root)["fingerprint"] == FINGERPRINT
 
 
 def test_the_columns_say_the_same_as_the_sets(root):
