@@ -8,7 +8,7 @@ import numpy as np
 
 from kitchen_prefs_robot.execution.conditions import REAL, Conditions
 from kitchen_prefs_robot.execution.hands import ArmHand, Hand, InvisibleHand
-from kitchen_prefs_robot.execution.looking import Look, TableDish, make_eyes
+from kitchen_prefs_robot.execution.looking import TableDish, make_eyes
 from kitchen_prefs_robot.motion.moves import OnFrame
 from kitchen_prefs_robot.motion.outcomes import Result
 from kitchen_prefs_robot.scene import World, sample_scene
@@ -156,7 +156,7 @@ class RobotEpisode:
     def _execute(self, decision: Decision) -> tuple[Result, int | None]:
         """Carry out a decision that the rules allow: how it ended, and the dish that was held."""
         if isinstance(decision, Toggle):
-            return self._hand.move_drawer(decision.drawer, self.look.opened is None), None
+            return self._hand.move_drawer(decision.drawer, self.look), None
         if isinstance(decision, Pick):
             return self._pick(self.look.dishes[decision.dish])
         return self._drop(decision.drawer)
@@ -165,8 +165,7 @@ class RobotEpisode:
         result = self._hand.pick(dish)
         if result is Result.DONE:
             self._in_hand = dish.seen.category
-            left = tuple(other for other in self.look.dishes if other is not dish)
-            self.look = Look(left, self.look.opened, self.look.frames, self.look.detections)
+            self.look = self.look.without(dish)
         return result, self._hand.held
 
     def _drop(self, drawer: str) -> tuple[Result, int | None]:
@@ -175,8 +174,7 @@ class RobotEpisode:
         result = self._hand.drop(drawer, already)
         if result is Result.DONE:
             self._placed.append(placed(self._in_hand, drawer))
-        if self._hand.held is None:
-            self._in_hand = None
+        self._in_hand = None
         return result, held
 
 

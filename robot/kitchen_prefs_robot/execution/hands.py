@@ -5,13 +5,13 @@ from typing import Protocol
 import numpy as np
 
 from kitchen_prefs_robot.demonstrations.person import SETTLING, SLOTS, slide_drawer
-from kitchen_prefs_robot.execution.looking import TableDish
+from kitchen_prefs_robot.execution.looking import Look, TableDish
 from kitchen_prefs_robot.execution.whereabouts import drawer_of, highest, nearest_on_table
 from kitchen_prefs_robot.motion.drawers import close_drawer, open_drawer
 from kitchen_prefs_robot.motion.dropping import drop
 from kitchen_prefs_robot.motion.moves import OnFrame
 from kitchen_prefs_robot.motion.outcomes import Result
-from kitchen_prefs_robot.motion.picking import PickOutcome, pick
+from kitchen_prefs_robot.motion.picking import PickOutcome, pick, put_back
 from kitchen_prefs_robot.perception.regions import HAND
 from kitchen_prefs_robot.scene import World
 from kitchen_prefs_robot.scene.layout import DRAWER_FLOOR, DRAWER_TRAVEL, from_cabinet
@@ -26,8 +26,8 @@ class Hand(Protocol):
 
     held: int | None  # the number of the dish that it truly holds
 
-    def move_drawer(self, drawer: str, opened: bool) -> Result:
-        """Open or close a drawer."""
+    def move_drawer(self, drawer: str, look: Look) -> Result:
+        """Open a drawer that was seen closed, or close it."""
 
     def pick(self, dish: TableDish) -> Result:
         """Pick a dish where it was seen."""
@@ -55,10 +55,10 @@ class ArmHand:
         self._rng = np.random.default_rng([seed, len("astray")])
         self._picked: PickOutcome | None = None
 
-    def move_drawer(self, drawer: str, opened: bool) -> Result:
-        """Pull a drawer open by its handle, or push it shut."""
-        move = open_drawer if opened else close_drawer
-        return move(self._world, drawer, self._on_frame).result
+    def move_drawer(self, drawer: str, look: Look) -> Result:
+        """Pull a drawer open by its handle, which is where it was seen, or push it shut."""
+        move = close_drawer if look.opened == drawer else open_drawer
+        return move(self._world, drawer, self._on_frame, look.openings[drawer]).result
 
     def pick(self, dish: TableDish) -> Result:
         """Grasp a dish and lift it."""
@@ -68,11 +68,12 @@ class ArmHand:
         return self._picked.result
 
     def drop(self, drawer: str, already: int) -> Result:
-        """Carry what is held over the open drawer, and let go."""
+        """Carry what is held over the open drawer and let go, or put it back if that cannot be."""
         assert self._picked is not None
         outcome = drop(self._world, drawer, self._picked, already, self._on_frame)
-        if outcome.result is not Result.UNREACHABLE:
-            self.held = None
+        if outcome.result is Result.UNREACHABLE:
+            put_back(self._world, self._picked, self._on_frame)
+        self.held = None
         return outcome.result
 
     def _error(self) -> np.ndarray:
@@ -94,12 +95,12 @@ class InvisibleHand:
         self.held: int | None = None
         self._world = world
 
-    def move_drawer(self, drawer: str, opened: bool) -> Result:
+    def move_drawer(self, drawer: str, look: Look) -> Result:
         """Move a drawer together with the dishes in it."""
         inside = [
             n for n in range(len(self._world.scene.dishes)) if drawer_of(self._world, n) == drawer
         ]
-        slide_drawer(self._world, drawer, DRAWER_TRAVEL if opened else 0.0, inside)
+        slide_drawer(self._world, drawer, 0.0 if look.opened == drawer else DRAWER_TRAVEL, inside)
         return Result.DONE
 
     def pick(self, dish: TableDish) -> Result:

@@ -1,8 +1,8 @@
 """One look at the table: which dishes stand where, and which drawer is open."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
-from typing import Protocol
+from dataclasses import dataclass, field, replace
+from typing import Protocol, Self
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -47,15 +47,24 @@ class Look:
 
     Attributes:
         dishes: On the table; those in drawers are remembered, not seen.
-        opened: The drawer that is open, or None.
+        openings: How far each drawer is open, m.
         frames: The cameras' pictures; none where nothing was looked at.
         detections: What perception made of them.
     """
 
     dishes: tuple[TableDish, ...]
-    opened: str | None
+    openings: Mapping[str, float]
     frames: Mapping[str, Frame] = field(default_factory=dict)
     detections: Sequence[Detection] = ()
+
+    @property
+    def opened(self) -> str | None:
+        """The drawer that is open, or None."""
+        return open_drawer(self.openings)
+
+    def without(self, dish: TableDish) -> Self:
+        """The look without the dish that the hand has taken since."""
+        return replace(self, dishes=tuple(other for other in self.dishes if other is not dish))
 
 
 class Eyes(Protocol):
@@ -109,7 +118,7 @@ class CameraEyes:
             TableDish(seen, dish.box.middle, dish.cloud.points, others_of(dish))
             for seen, dish in zip(state.dishes, found, strict=True)
         )
-        return Look(dishes, state.opened, frames, sight.dishes)
+        return Look(dishes, sight.openings, frames, sight.dishes)
 
     def close(self) -> None:
         """Release OpenGL."""
@@ -127,16 +136,19 @@ class TrueEyes:
     def look(self) -> Look:
         """Read the state of the world."""
         world = self._world
-        standing = [n for n in range(len(world.scene.dishes)) if is_on_table(world, n)]
-        openings = {drawer: world.drawer_opening(drawer) for drawer in DRAWERS}
-        return Look(tuple(map(self._dish, standing)), open_drawer(openings))
+        points = exact_points(world, self._rng)
+        dishes = tuple(
+            self._dish(number, *points[number])
+            for number in range(len(world.scene.dishes))
+            if is_on_table(world, number)
+        )
+        return Look(dishes, {drawer: world.drawer_opening(drawer) for drawer in DRAWERS})
 
     def close(self) -> None:
         """Do nothing: there is nothing to release."""
 
-    def _dish(self, number: int) -> TableDish:
+    def _dish(self, number: int, points: np.ndarray, others: np.ndarray) -> TableDish:
         middle, quaternion = self._world.dish_pose(number)
-        points, others = exact_points(self._world, number, self._rng)
         return TableDish(self._seen(number, middle, quaternion), middle, points, lambda: others)
 
     def _seen(self, number: int, middle: np.ndarray, quaternion: np.ndarray) -> SeenDish:
