@@ -140,9 +140,7 @@ ROBOT = {
         "kitchen_prefs.evaluation kitchen_prefs.instances kitchen_prefs.metrics "
         "kitchen_prefs.simulation kitchen_prefs.utils"
     ),
-    "lerobot": (
-        "demonstrations execution scene kitchen_prefs.envs kitchen_prefs.utils"
-    ),
+    "lerobot": ("demonstrations execution scene kitchen_prefs.envs kitchen_prefs.utils"),
     "commands": (
         "demonstrations execution motion perception scene task kitchen_prefs.evaluation "
         "kitchen_prefs.metrics kitchen_prefs.rendering"
