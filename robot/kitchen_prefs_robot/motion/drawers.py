@@ -17,7 +17,10 @@ from kitchen_prefs_robot.scene.layout import (
     handle_position,
 )
 
-TILT = np.deg2rad(50.0)  # of the hand from straight down; at 60 no path opens the upper drawer
+# The hand's tilt from straight down, where a drawer is closed and where it is open: it turns about
+# the round bar as it pulls, because a tilted hand would have to go behind the arm's own base.
+TILTS = np.deg2rad([40.0, 30.0])
+HALF_OPEN = 128.0  # the gripper's control, 43 mm: opened wide, a finger would push at the front
 PRE_GRASP = 0.06  # m back along the approach
 LETTING_GO = 0.05  # m back until the fingers are off the handle
 RETREAT_DISTANCE = 0.42  # m from the base's axis
@@ -63,7 +66,7 @@ def open_drawer(
     Returns:
         How it ended; the arm is at home.
     """
-    opening = world.drawer_opening(drawer) if opening is None else opening
+    opening = world.drawer_opening(drawer) if opening is None else max(opening, 0.0)
     if opening > OPENED:
         return Outcome(Result.DONE, 0.0)
     return _slide(Arm(world, on_frame), drawer, opening, DRAWER_TRAVEL)
@@ -73,7 +76,7 @@ def close_drawer(
     world: World, drawer: str, on_frame: OnFrame | None = None, opening: float | None = None
 ) -> Outcome:
     """Push a drawer shut; as `open_drawer`."""
-    opening = world.drawer_opening(drawer) if opening is None else opening
+    opening = world.drawer_opening(drawer) if opening is None else max(opening, 0.0)
     if opening < SHUT:
         return Outcome(Result.DONE, 0.0)
     return _slide(Arm(world, on_frame), drawer, opening, 0.0)
@@ -110,7 +113,8 @@ def _plan(
 
 def _at_handle(drawer: str, opening: float) -> np.ndarray:
     """The hand's pose, (4, 4), with a finger above the handle and one below it."""
-    approach = CABINET_ROTATION.apply((-np.sin(TILT), 0.0, -np.cos(TILT)))
+    tilt = np.interp(opening, (0.0, DRAWER_TRAVEL), TILTS)
+    approach = CABINET_ROTATION.apply((-np.sin(tilt), 0.0, -np.cos(tilt)))
     bar = CABINET_ROTATION.apply((0.0, 1.0, 0.0))
     return hand_pose(handle_position(drawer, opening), approach, np.cross(approach, bar))
 
@@ -131,22 +135,22 @@ def _away(pose: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _execute(arm: Arm, plan: _Plan) -> Result:
-    arm.open_fingers()
+    arm.open_fingers(HALF_OPEN)
     if not arm.follow(plan.before) or not arm.follow(plan.approach):
         arm.follow(joint_path(arm.target, plan.before[-1]))
         return Result.TIMED_OUT
     arm.close_fingers()
     if not _holds(arm):
-        arm.open_fingers()
+        arm.open_fingers(HALF_OPEN)
         arm.follow(plan.approach[::-1])
         return Result.MISSED
     if arm.follow(plan.slide):
         held = _holds(arm)
-        arm.open_fingers()
+        arm.open_fingers(HALF_OPEN)
         arm.follow(plan.retreat)
         return Result.DONE if held else Result.JAMMED
     arm.follow(joint_path(arm.target, arm.joints))  # it has stopped on its way: let go there
-    arm.open_fingers()
+    arm.open_fingers(HALF_OPEN)
     path = line_path(arm.target, *_away(kinematics().pose(arm.target)))
     if path is not None:
         arm.follow(path)

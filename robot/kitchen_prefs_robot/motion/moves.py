@@ -69,9 +69,9 @@ class Arm:
         """Move back over the near edge of the counter."""
         return self.follow(joint_path(self.target, np.array(HOME)))
 
-    def open_fingers(self) -> None:
-        """Open the gripper wide."""
-        self._grip(OPEN)
+    def open_fingers(self, control: float = OPEN) -> None:
+        """Open the gripper: wide, or to one of its controls between open and closed."""
+        self._grip(control)
 
     def close_fingers(self) -> None:
         """Close the gripper, on what is between its fingers or on nothing."""

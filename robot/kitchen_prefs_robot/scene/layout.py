@@ -27,7 +27,7 @@ DRAWER_WALL = 0.008
 DRAWER_FLOOR = {"upper": 0.250, "lower": 0.035}  # z of the floor's upper side
 DRAWER_TRAVEL = 0.28  # further, and the arm would have to fold more than it can
 FRONT_HEIGHT = 0.155  # of a drawer's front, which leaves a gap: a dish passes over it
-HANDLE_OUT = 0.065  # from the front's inside to the bar's axis: room for a finger in between
+HANDLE_OUT = 0.075  # from the front's inside to the bar's axis: room for a finger in between
 HANDLE_UP = 0.070  # from the drawer's floor to the bar's axis
 HANDLE_RADIUS, HANDLE_LENGTH = 0.006, 0.12
 
