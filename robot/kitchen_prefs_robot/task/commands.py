@@ -26,22 +26,23 @@ def task(
 
     Its sessions have preferences that training does not see; each is prompted with one
     demonstration in another session. "Right" is the share of dishes in the right drawer in the
-    right order.
+    right order; a success is an episode with all dishes in the right drawers and both closed.
     Any other --policy.SETTING=VALUE overrides a setting of the policy.
 
     Example: kitchen-prefs robot task --policy.path=policies/checkpoints/ttp_drawers --sessions=200
     """
     from kitchen_prefs.evaluation.policy_loading import load_policy
-    from kitchen_prefs.metrics import summarise
+    from kitchen_prefs.metrics import summarise, wilson_success
     from kitchen_prefs_robot.task.conditions import evaluate
     from kitchen_prefs_robot.task.metrics import METRICS
     from kitchen_prefs_robot.task.sessions import make_session
 
     chosen = [make_session(split, index) for index in range(sessions)]
     policy = load_policy(path, options=settings_of(context.args))
-    table = Table("Condition", *METRICS, title=f"{split}, {sessions} sessions")
+    table = Table("Condition", *METRICS, "Success", title=f"{split}, {sessions} sessions")
     for name, episodes in evaluate(policy, chosen):
         intervals = [summarise(episodes, metric) for metric in METRICS.values()]
+        intervals.append(wilson_success(episodes))
         table.add_row(name, *(f"{interval.mean:.3f}" for interval in intervals))
         table.add_row("  95 % from", *(f"{interval.low:.3f}" for interval in intervals))
         table.add_row("         to", *(f"{interval.high:.3f}" for interval in intervals))

@@ -16,6 +16,7 @@ from kitchen_prefs_robot.task.decisions import Toggle
 from kitchen_prefs_robot.task.demonstrations import demonstrate
 from kitchen_prefs_robot.task.preferences import LABELS
 from kitchen_prefs_robot.task.sessions import DATA_VERSION, DISHES, DrawersSession, make_session
+from kitchen_prefs_robot.task.summaries import summarise
 
 NAME = f"drawers-train-v{DATA_VERSION}"
 SESSIONS = len(LABELS["train"]) * len(DISHES["train"])  # each preference once with each number
@@ -78,11 +79,12 @@ def as_recorded(session: DrawersSession) -> Demonstration:
     shown = demonstrate(session)
     last = np.arange(len(shown.chosen)) == len(shown.chosen) - 1  # (T,)
     chosen_rows = [rows[row] for rows, row in zip(shown.sets, shown.chosen, strict=True)]
+    summaries = [summarise(state, decision) for decision, state in enumerate(shown.states)]
     moves_dish = [not isinstance(decision, Toggle) for decision in shown.decisions]
     return Demonstration(
         instances=np.stack([instances.pack(rows) for rows in shown.sets]),
-        environment_state=np.stack([summary for summary, _ in shown.summaries]),
-        state=np.stack([state for _, state in shown.summaries]),
+        environment_state=np.stack([summary for summary, _ in summaries]),
+        state=np.stack([state for _, state in summaries]),
         action=np.stack(chosen_rows)[:, instances.POSE],
         chosen_index=np.array(shown.chosen, dtype=np.int64),
         reward=np.array(moves_dish, dtype=np.float32),

@@ -9,7 +9,7 @@ from kitchen_prefs_robot.task.expert import choose
 from kitchen_prefs_robot.task.rows import observe, prompt_of
 from kitchen_prefs_robot.task.sessions import DrawersSession
 from kitchen_prefs_robot.task.simulator import PERFECT, DrawersSimulator, Perception
-from kitchen_prefs_robot.task.summaries import summarise
+from kitchen_prefs_robot.task.state import DrawersState
 
 
 @dataclass(frozen=True)
@@ -20,13 +20,13 @@ class DrawersDemonstration:
         sets: The instance set of each decision, (N, 13) each.
         chosen: The row that each decision chose.
         decisions: The decisions; a dish has its number at the session's start.
-        summaries: The flat summaries of each state, see `summaries.summarise`.
+        states: The state that was seen before each decision.
     """
 
     sets: tuple[np.ndarray, ...]
     chosen: tuple[int, ...]
     decisions: tuple[Decision, ...]
-    summaries: tuple[tuple[np.ndarray, np.ndarray], ...]
+    states: tuple[DrawersState, ...]
 
     @property
     def prompt(self) -> np.ndarray:
@@ -39,14 +39,14 @@ def demonstrate(session: DrawersSession, perception: Perception = PERFECT) -> Dr
     simulator = DrawersSimulator(session, perception)
     sets: list[np.ndarray] = []
     chosen: list[int] = []
-    summaries = []
+    states: list[DrawersState] = []
     while not simulator.terminated:
         decision = choose(simulator.state, session.preference)
-        summaries.append(summarise(simulator.seen, len(sets)))
+        states.append(simulator.seen)
         sets.append(observe(simulator.seen, len(sets)))
         chosen.append(choices(simulator.seen).index(decision))
         refused = simulator.decide(decision)
         assert not refused, f"The expert chose what is refused: {refused}"
     return DrawersDemonstration(
-        tuple(sets), tuple(chosen), tuple(simulator.decisions), tuple(summaries)
+        tuple(sets), tuple(chosen), tuple(simulator.decisions), tuple(states)
     )

@@ -5,7 +5,7 @@ from itertools import groupby, pairwise
 
 from rapidfuzz.distance import LCSseq
 
-from kitchen_prefs.metrics import Episode, Metric, edit_similarity, packing_efficiency, success
+from kitchen_prefs.metrics import Episode, Metric, edit_similarity, packing_efficiency
 from kitchen_prefs.simulation.kitchen import FIRST_DISH, FIRST_PLACEMENT, RACK_INSTANCE
 from kitchen_prefs_robot.task.decisions import Decision, Pick, Place, Toggle
 from kitchen_prefs_robot.task.demonstrations import demonstrate
@@ -37,7 +37,6 @@ METRICS: dict[str, Metric] = {
     "Drawer": right_drawer,
     "PE": packing_efficiency,
     "ED": edit_similarity,
-    "Success": success,
 }
 
 

@@ -121,7 +121,7 @@ def _all_preferences() -> tuple[DrawerPreference, ...]:
 # dishes come first, so that training sees none of them; the others are in random order.
 PREFERENCES = _all_preferences()
 LABELS = {
-    "test": range(100),
-    "val": range(100, 140),
-    "train": range(140, len(PREFERENCES)),
+    "test": range(200),
+    "val": range(200, 240),
+    "train": range(240, len(PREFERENCES)),
 }

@@ -17,9 +17,12 @@ from kitchen_prefs.instances import IS_PLACE
 from kitchen_prefs_experiments.checkpoints import checkpoints_folder
 from kitchen_prefs_experiments.recipes import recipe_file, training_data
 from kitchen_prefs_robot.task import dataset
+from kitchen_prefs_robot.task.preferences import LABELS
 from kitchen_prefs_robot.task.sessions import DISHES, make_session
 
 SESSIONS = 12
+FINGERPRINT = "dd08c759f0dd4481bdd12f591750689aa02d368811a50eb7e8ac081b83ea9c96"
+PREFERENCES = len(LABELS["train"])
 
 
 @pytest.fixture(scope="module")
@@ -39,13 +42,17 @@ def home(made_once):
 def some():
     """Two sessions of each of six preferences, so that each has a prompt in the other."""
     labels = dataset.SESSIONS // 2
-    first = [make_session("train", index) for index in range(labels)]
-    return first + [make_session("train", 231 + index) for index in range(labels)]
+    turns = (0, PREFERENCES)
+    return [make_session("train", turn + index) for turn in turns for index in range(labels)]
 
 
 @pytest.fixture
 def root(home):
     return home / "kitchen_prefs" / dataset.NAME
+
+
+def test_the_sessions_are_those_that_the_checkpoint_was_trained_on(root):
+    assert read_manifest(dataset.NAME, root)["fingerprint"] == FINGERPRINT
 
 
 def test_the_columns_say_the_same_as_the_sets(root):
@@ -65,7 +72,7 @@ def test_the_columns_say_the_same_as_the_sets(root):
 
 
 def test_the_full_data_set_has_each_preference_with_each_number_of_dishes():
-    sessions = [make_session("train", index) for index in range(0, dataset.SESSIONS, 231)]
+    sessions = [make_session("train", index) for index in range(0, dataset.SESSIONS, PREFERENCES)]
     assert tuple(len(session.start.dishes) for session in sessions) == DISHES["train"]
     assert len({session.label for session in sessions}) == 1
 
