@@ -67,15 +67,14 @@ def draw_dataset(name: str, episodes: Sequence[int] | None = None) -> Path:
 
 def _write(content: Content, source: Path, root: Path, episodes: Sequence[int]) -> None:
     columns, tasks = read_columns(source), read_tasks(source)
-    # There are no videos; LeRobot would look for a decoder and log what it does not find.
     copy = LeRobotDataset.create(
         f"{content.repo_id}-drawn",
         FPS,
         DRAWN_FEATURES,
         root,
         ROBOT_TYPE,
-        False,
-        video_backend="pyav",
+        use_videos=False,
+        video_backend="pyav",  # there are none; LeRobot would look for a decoder and log about it
     )
     disable_progress_bars()  # LeRobot's, one for each episode
     try:
