@@ -1,7 +1,7 @@
 """Copy a data set with a drawing of each decision, for `lerobot-dataset-viz`.
 
 The drawing shows what the demonstration decides, so it is no observation: its name does not begin
-with "observation", and LeRobot's policies cannot train on it.
+with "observation", and so LeRobot hands it to no policy.
 """
 
 from collections.abc import Iterator, Sequence
