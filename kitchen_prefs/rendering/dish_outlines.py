@@ -38,12 +38,6 @@ class Outline:
     mark: np.ndarray
     inside: bool
 
-    @property
-    def reach(self) -> float:
-        """How far it extends from its centre, in metres."""
-        corners = np.concatenate(self.parts)
-        return float(np.hypot(*(corners - (corners.min(0) + corners.max(0)) / 2).T).max())
-
 
 def outline(category: str, pose: np.ndarray) -> Outline:
     """A dish of a category in a pose, (7,)."""
@@ -58,6 +52,11 @@ def outline(category: str, pose: np.ndarray) -> Outline:
         mark=turn.apply(mark)[:, :2] + pose[:2],
         inside=inside,
     )
+
+
+def surround(points: np.ndarray, distance: float) -> np.ndarray:
+    """The line that goes round points, (n, 2), at a distance from them, (m, 2)."""
+    return _hull((points[:, None] + distance * ROUND).reshape(-1, 2))
 
 
 def _ring(category: str, share: float, height: float) -> np.ndarray:

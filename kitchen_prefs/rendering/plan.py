@@ -11,7 +11,7 @@ import numpy as np
 from kitchen_prefs.preferences import CATEGORIES, RACKS, Preference
 from kitchen_prefs.rendering import plan_ground as ground
 from kitchen_prefs.rendering.canvas import Canvas
-from kitchen_prefs.rendering.dish_outlines import Outline, outline
+from kitchen_prefs.rendering.dish_outlines import Outline, outline, surround
 from kitchen_prefs.simulation.kitchen import (
     DOOR,
     FIRST_DISH,
@@ -38,6 +38,7 @@ EDGE, MARK, INSIDE, SHADOW = "#2a2f2c", (42, 47, 44, 150), (0, 0, 0, 40), (60, 4
 SHADOW_OFFSET = np.array([1.5, 2.5])  # pixels
 RING, HALO, TINT, PALE = "#e8590c", "#fffdf8", "#fbdcc4", (233, 227, 213, 150)
 UPRIGHT = np.array([0, 0, 0, 1, 0, 0, 0])
+RING_DISTANCE = 7  # pixels from the dish
 LIST_SCALE = 90  # pixels a metre, of the dishes in the lists beside the racks
 LIST_STEP = 36  # pixels from one to the next
 
@@ -150,19 +151,16 @@ def _draw_placing(canvas: Canvas, kitchen: Kitchen, held: int, instance: int) ->
     shape = outline(category, pose)
     for part in shape.parts:
         canvas.polygon(ground.RACK_AREAS[rack].place(part), TINT, RING, 1.5)
-    centre, radius = _ring(canvas, ground.RACK_AREAS[rack], shape)
-    away = (start - centre) / np.hypot(*(start - centre))
-    _arrow(canvas, start, centre + radius * away)
+    ring = _ring(canvas, ground.RACK_AREAS[rack], shape)
+    _arrow(canvas, start, ring[np.hypot(*(ring - start).T).argmin()])
 
 
-def _ring(canvas: Canvas, area: ground.Area, shape: Outline) -> tuple[np.ndarray, float]:
-    """A ring round a dish; its centre, (2,), and its radius."""
-    corners = area.place(np.concatenate(shape.parts))
-    centre = (corners.min(0) + corners.max(0)) / 2
-    radius = float(np.hypot(*(corners - centre).T).max()) + 6
-    canvas.circle(centre, radius + 2, None, HALO, 7)
-    canvas.circle(centre, radius, None, RING, 3)
-    return centre, radius
+def _ring(canvas: Canvas, area: ground.Area, shape: Outline) -> np.ndarray:
+    """A ring round a dish, (n, 2)."""
+    ring = surround(area.place(np.concatenate(shape.parts)), RING_DISTANCE)
+    canvas.polygon(ring, None, HALO, 7)
+    canvas.polygon(ring, None, RING, 3)
+    return ring
 
 
 def _ring_box(canvas: Canvas, box: tuple[float, float, float, float]) -> None:

@@ -111,24 +111,24 @@ def test_a_data_set_streams_through_a_worker(edited):
 
 
 def test_two_processes_train_and_log_to_wandb_offline(edited, tmp_path):
-    programs = Path(sys.executable).parent
-    launch = [programs / "accelerate", "launch", "--multi_gpu", "--num_processes=2"]
-    training = [
-        programs / "lerobot-train",
+    launch = [sys.executable, "-m", "accelerate.commands.launch", "--multi_gpu"]
+    command = [
+        *(*launch, "--num_processes=2", "-m", "lerobot.scripts.lerobot_train"),
         f"--config_path={ROOT / 'policies/recipes/ttp_quick.yaml'}",
         *(f"--dataset.repo_id={NAME}", f"--output_dir={tmp_path / 'run'}"),
         *("--steps=2", "--save_freq=2", "--log_freq=1", "--batch_size=4", "--num_workers=0"),
         *("--wandb.enable=true", "--wandb.mode=offline"),
     ]
-    done = subprocess.run(
-        [*launch, *training],
-        env=os.environ | {"HF_LEROBOT_HOME": str(edited), "HF_HUB_OFFLINE": "1"},
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert done.returncode == 0, done.stderr[-3000:]
-    assert "Effective batch size: 4 x 2 = 8" in done.stdout + done.stderr
+    environment = os.environ | {"HF_LEROBOT_HOME": str(edited), "HF_HUB_OFFLINE": "1"}
+    pipe = {"stdout": subprocess.PIPE, "stderr": subprocess.STDOUT, "text": True}
+    with subprocess.Popen(command, env=environment, **pipe) as process:
+        try:
+            printed, _ = process.communicate(timeout=240)
+        except subprocess.TimeoutExpired:
+            process.terminate()  # the launcher then ends both
+            raise
+    assert process.returncode == 0, printed[-3000:]
+    assert "Effective batch size: 4 x 2 = 8" in printed
     (log,) = tmp_path.glob("run/wandb/offline-run-*/run-*.wandb")
     assert b"pick_accuracy" in log.read_bytes()
 
