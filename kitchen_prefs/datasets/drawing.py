@@ -86,8 +86,8 @@ def _write(content: Content, source: Path, root: Path, episodes: Sequence[int]) 
                 task = tasks[columns["task_index"][frame]]
                 copy.add_frame({**values, DRAWING: picture, "task": task})
             copy.save_episode()
-        copy.finalize()
     finally:
+        copy.finalize()  # else LeRobot writes on after the folder of a failed copy is deleted
         enable_progress_bars()
 
 

@@ -10,6 +10,7 @@ import numpy as np
 import pyarrow.parquet as pq
 import pytest
 import torch
+import warm_python
 from lerobot.datasets import LeRobotDataset, StreamingLeRobotDataset
 from lerobot.scripts import lerobot_dataset_viz
 from lerobot.utils.import_utils import is_package_available
@@ -60,13 +61,8 @@ def edited(made_once):
             patch.setenv("HF_LEROBOT_HOME", str(home))
             make_dataset(NAME)
         environment = {"HF_LEROBOT_HOME": str(home), "HF_HUB_OFFLINE": "1"}
-        done = subprocess.run(
-            [sys.executable, "-c", EDIT_ALL, json.dumps(CHAIN)],
-            env=os.environ | environment | {"HF_DATASETS_CACHE": str(home / "cache")},
-            capture_output=True,
-            text=True,
-            check=False,
-        )
+        environment |= {"HF_DATASETS_CACHE": str(home / "cache")}
+        done = warm_python.run("-c", EDIT_ALL, json.dumps(CHAIN), env=os.environ | environment)
         assert done.returncode == 0, done.stderr[-3000:]
 
     return made_once("edited", fill)
