@@ -115,10 +115,9 @@ def _isolated(
 ) -> "IsolatedPolicy":
     from kitchen_prefs.evaluation.checkpoint_reading import find_checkpoint
     from kitchen_prefs.evaluation.isolation.isolated_policy import IsolatedPolicy
-    from kitchen_prefs.evaluation.isolation.sandbox import NO_SANDBOX, has_sandbox
+    from kitchen_prefs.evaluation.isolation.sandbox import warn_without_sandbox
 
-    if not has_sandbox():
-        typer.echo(NO_SANDBOX, err=True)
+    warn_without_sandbox()
     check_one_policy(path, policy_type)
     arguments = {
         "path": path and str(find_checkpoint(path).resolve()),

@@ -179,13 +179,12 @@ def verify(
         return
     make_folder(out, "--out")
     make_folder(verifications, "--verifications")
-    from kitchen_prefs.evaluation.isolation.sandbox import NO_SANDBOX, has_sandbox
+    from kitchen_prefs.evaluation.isolation.sandbox import warn_without_sandbox
     from kitchen_prefs_leaderboard.policy_runs import policy_settings
     from kitchen_prefs_leaderboard.reruns import Rerunner, rerun_submission
     from kitchen_prefs_leaderboard.submission_writing import policy_of
 
-    if not has_sandbox():
-        typer.echo(NO_SANDBOX, err=True)
+    warn_without_sandbox()
     submission = read_known(folder)
     settings = policy_settings(path, policy_type, context.args, submission.description.track)
     rerunner = Rerunner(settings, out / submission.digest[:12], jobs, plugins)
