@@ -180,13 +180,13 @@ def verify(
     make_folder(out, "--out")
     make_folder(verifications, "--verifications")
     from kitchen_prefs.evaluation.isolation.sandbox import warn_without_sandbox
-    from kitchen_prefs_leaderboard.policy_runs import policy_settings
+    from kitchen_prefs_leaderboard.policy_runs import settings_on_track
     from kitchen_prefs_leaderboard.reruns import Rerunner, rerun_submission
     from kitchen_prefs_leaderboard.submission_writing import policy_of
 
     warn_without_sandbox()
     submission = read_known(folder)
-    settings = policy_settings(path, policy_type, context.args, submission.description.track)
+    settings = settings_on_track(path, policy_type, context.args, submission.description.track)
     rerunner = Rerunner(settings, out / submission.digest[:12], jobs, plugins)
     with at_work_alone(rerunner.folder):
         verification.check_policy(submission.description, policy_of(rerunner.described))

@@ -47,7 +47,7 @@ class IsolatedPolicy:
     """A policy in a process of its own, for `roll_out`; a context manager that ends the process.
 
     Args:
-        settings: The arguments of `load_policy`; a path names a folder.
+        settings: The arguments of `load_policy`, see `policy_settings`.
         log: What the process prints.
         hidden: Folders that the process must not see.
         plugins: A folder of packages that it alone imports from, with the policy's code.
@@ -83,14 +83,13 @@ class IsolatedPolicy:
         self._track = settings.get("track")
         self._scratch = TemporaryDirectory(prefix="kitchen_prefs_policy_")
         scratch = Path(self._scratch.name)
-        started = {"memory": self._limits.memory, "folder": str(Path.cwd())}
-        arguments = json.dumps(settings | started)
+        arguments = json.dumps(settings | {"memory": self._limits.memory})
         command = [sys.executable, "-P", "-m", PROGRAM, arguments]
         with log.open("ab") as file:
             self._process = start_confined(
                 command,
                 scratch,
-                readable=map(Path, filter(None, (settings.get("path"), plugins))),
+                readable=_with_links(settings.get("path"), settings.get("below"), plugins),
                 hidden=hidden,
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
@@ -190,6 +189,12 @@ class IsolatedPolicy:
     def _kill(self) -> None:
         if self._process.poll() is None:
             os.killpg(self._process.pid, signal.SIGKILL)
+
+
+def _with_links(*paths: str | Path | None) -> list[Path]:
+    """Folders and what their files are links to, as in the cache of the hub."""
+    folders = [Path(path) for path in paths if path]
+    return folders + [file.resolve() for folder in folders for file in folder.iterdir()]
 
 
 def printable(text: str) -> str:
