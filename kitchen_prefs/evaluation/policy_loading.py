@@ -31,6 +31,8 @@ from kitchen_prefs.evaluation.policy_fingerprint import Adapter, fingerprint
 from kitchen_prefs.evaluation.policy_options import check_one_policy
 from kitchen_prefs.utils.suggestions import check_settings, suggest
 
+KNOWN_PACKAGES = ("lerobot", "lerobot_policy_kitchen_prefs")
+
 
 @dataclass(frozen=True)
 class LoadedPolicy:
@@ -83,6 +85,12 @@ class LoadedPolicy:
     def type(self) -> str:
         """The policy's type."""
         return self.policy.config.type
+
+    @property
+    def plugin(self) -> str | None:
+        """The package that it comes from; None if that is LeRobot or this benchmark's."""
+        package = type(self.policy.config).__module__.partition(".")[0]
+        return None if package in KNOWN_PACKAGES else package
 
     @property
     def parameters(self) -> int:

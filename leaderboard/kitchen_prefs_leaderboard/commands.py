@@ -189,7 +189,7 @@ def verify(
     settings = settings_on_track(path, policy_type, context.args, submission.description.track)
     rerunner = Rerunner(settings, out / submission.digest[:12], jobs, plugins)
     with at_work_alone(rerunner.folder):
-        verification.check_policy(submission.description, policy_of(rerunner.described))
+        verification.check_policy(submission.description, policy_of(rerunner.described, plugins))
         (entry,) = replay_submissions([submission], jobs)
         found = rerun_submission(entry, rerunner, salt, by)
     file = verification.write_verification(found, verifications)

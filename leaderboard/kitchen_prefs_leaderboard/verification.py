@@ -22,6 +22,7 @@ from kitchen_prefs_leaderboard.scoring import MEAN, Entry
 from kitchen_prefs_leaderboard.submission_format import (
     Hash,
     Name,
+    Plugin,
     Policy,
     Strict,
     Submission,
@@ -136,6 +137,11 @@ def check_policy(submission: Submission, policy: Policy) -> None:
     """
     if submission.policy.checkpoint is None:
         raise ValueError("The submission names no checkpoint, so it cannot be re-run.")
+    if submission.policy.plugin != policy.plugin:
+        raise ValueError(
+            f"The submission's policy comes from {_plugin_named(submission.policy.plugin)}, and "
+            f"this one from {_plugin_named(policy.plugin)}; install the submission's."
+        )
     if submission.policy != policy:
         raise ValueError(
             f"The submission is of another policy ({_named(submission.policy)}) than this one "
@@ -311,6 +317,12 @@ def _within_spread(entry: Entry, reruns: Sequence[Episodes]) -> bool:
 def _named(policy: Policy) -> str:
     checkpoint = (policy.checkpoint or "no checkpoint")[:12]
     return f"{policy.type}, {policy.parameters} parameters, {checkpoint}"
+
+
+def _plugin_named(plugin: Plugin | None) -> str:
+    if plugin is None:
+        return "LeRobot or this benchmark"
+    return f"{plugin.distribution} {plugin.version} (code {plugin.code[:12]})"
 
 
 def _score_interval(interval: Interval) -> ScoreInterval:

@@ -58,6 +58,7 @@ class IsolatedPolicy:
     Attributes:
         type: The policy's type. This and the others are what the process says of its policy: a
             claim that the evaluation cannot prove.
+        plugin: The package that it comes from, see `LoadedPolicy`.
         parameters: The number of its weights.
         fingerprint: The hash of its weights and settings.
         track: The track whose observations it receives: the one of the settings, or else its own.
@@ -85,11 +86,12 @@ class IsolatedPolicy:
         scratch = Path(self._scratch.name)
         arguments = json.dumps(settings | {"memory": self._limits.memory})
         command = [sys.executable, "-P", "-m", PROGRAM, arguments]
+        folders = (settings.get("path"), settings.get("below"), plugins)
         with log.open("ab") as file:
             self._process = start_confined(
                 command,
                 scratch,
-                readable=_with_links(settings.get("path"), settings.get("below"), plugins),
+                readable=[Path(folder) for folder in folders if folder],
                 hidden=hidden,
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
@@ -152,12 +154,15 @@ class IsolatedPolicy:
             head, _ = receive(self._pipe_out, 0)
             if isinstance(head.get("refused"), str):
                 raise ValueError(printable(head["refused"]))
-            named = (head.get(name) for name in ("type", "fingerprint", "track"))
-            if not (all(isinstance(n, str) for n in named) and "parameters" in head):
+            named = [head.get(name) for name in ("type", "fingerprint", "track")]
+            plugin = head.get("plugin")
+            as_it_must = all(isinstance(n, str) for n in [*named, plugin or ""])
+            if not (as_it_must and "parameters" in head):
                 raise PipeClosedError
         self._seconds_left = self._limits.decision  # a policy warms up
         self.type, self.fingerprint = head["type"], head["fingerprint"]
         self.parameters, self.track = head["parameters"], self._track or head["track"]
+        self.plugin = plugin
 
     @contextmanager
     def _answering(self, what: str, seconds: float) -> Iterator[None]:
@@ -189,12 +194,6 @@ class IsolatedPolicy:
     def _kill(self) -> None:
         if self._process.poll() is None:
             os.killpg(self._process.pid, signal.SIGKILL)
-
-
-def _with_links(*paths: str | Path | None) -> list[Path]:
-    """Folders and what their files are links to, as in the cache of the hub."""
-    folders = [Path(path) for path in paths if path]
-    return folders + [file.resolve() for folder in folders for file in folder.iterdir()]
 
 
 def printable(text: str) -> str:

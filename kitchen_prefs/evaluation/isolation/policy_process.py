@@ -52,6 +52,7 @@ def serve(settings: dict, requests: BinaryIO, replies: BinaryIO) -> None:
     send(
         replies,
         type=loaded.type,
+        plugin=loaded.plugin,
         parameters=loaded.parameters,
         fingerprint=loaded.fingerprint,
         track=loaded.track,

@@ -64,7 +64,7 @@ def start_confined(
         command: The command.
         scratch: The one folder that it may write to, in memory and seen by it alone, so that
             policies in several processes cannot exchange what they observe.
-        readable: Files and folders that it needs beside Python and the packages.
+        readable: Folders that it needs beside Python and the packages.
         hidden: Folders that it must not see though they lie in those that it sees.
         confine: Whether to confine it; if not given, where this platform can.
         **popen: More arguments of `subprocess.Popen`.
@@ -107,7 +107,9 @@ def _visible(readable: Iterable[Path]) -> list[Path]:
     """
     imported_from = map(Path, filter(None, sys.path))
     wanted = [*map(Path, SYSTEM), Path(sys.prefix), Path(sys.base_prefix), *imported_from]
-    wanted += readable
+    for folder in readable:
+        # In the hub's cache a checkpoint's files are links.
+        wanted += [folder, *(file.resolve() for file in folder.iterdir())]
     places = {place for one in wanted for place in (one.absolute(), one.resolve())}
     return sorted(place for place in places if place.exists())
 
