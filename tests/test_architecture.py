@@ -75,6 +75,7 @@ EXPERIMENTS = {
 LEADERBOARD = {
     "visible_text": "",
     "submission_format": "visible_text kitchen_prefs.envs kitchen_prefs.splits",
+    "plugin_identity": "submission_format",
     "submission_reading": "submission_format kitchen_prefs.splits",
     "replay": (
         "submission_format submission_reading kitchen_prefs.envs kitchen_prefs.instances "
@@ -93,7 +94,7 @@ LEADERBOARD = {
         "kitchen_prefs.splits kitchen_prefs.utils"
     ),
     "submission_writing": (
-        "replay submission_format kitchen_prefs.datasets kitchen_prefs.evaluation "
+        "plugin_identity replay submission_format kitchen_prefs.datasets kitchen_prefs.evaluation "
         "kitchen_prefs.metrics kitchen_prefs.splits kitchen_prefs.utils"
     ),
     "verification": (
