@@ -6,7 +6,7 @@ LeRobot and torch take seconds to import, so the commands import what needs them
 import os
 from enum import StrEnum
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 from rich.console import Console
@@ -14,6 +14,9 @@ from rich.console import Console
 from kitchen_prefs.evaluation.policy_options import ANY_SETTING, PolicyPath, PolicyType
 from kitchen_prefs.utils.files import at_work_alone, make_folder
 from kitchen_prefs_leaderboard.submission_format import UNSPECIFIED
+
+if TYPE_CHECKING:
+    from kitchen_prefs_leaderboard.scoring import Entry
 
 app = typer.Typer(
     name="leaderboard",
@@ -117,11 +120,8 @@ def score(
     kitchen-prefs leaderboard score leaderboard/submissions/* --format=csv --by=count
     """
     from kitchen_prefs_leaderboard import score_formats
-    from kitchen_prefs_leaderboard.scoring import score_submissions, shared_checkpoints
 
-    entries = score_submissions(folders, jobs)
-    for sentence in shared_checkpoints(entries):
-        typer.echo(sentence, err=True)
+    entries = _scored(folders, jobs)
     if form is Form.TABLE:
         for entry in entries:
             console.print(*score_formats.to_tables(entry, by), sep="\n")
@@ -216,17 +216,23 @@ def page(
     make_folder(out.parent, "--out")
     from kitchen_prefs_leaderboard.page.building import write_page
     from kitchen_prefs_leaderboard.ranking import rank
-    from kitchen_prefs_leaderboard.scoring import score_submissions, shared_checkpoints
     from kitchen_prefs_leaderboard.verification import read_verifications
 
     if verifications != KEPT and not verifications.is_dir():
         raise ValueError(f"There is no folder {verifications}; give another --verifications.")
     verified = read_verifications(verifications)
+    write_page(rank(_scored(folders, jobs), verified), out)
+    typer.echo(f"The page is {out}; a browser opens it without a server.")
+
+
+def _scored(folders: list[Path], jobs: int) -> "list[Entry]":
+    """Replay and score submissions, and say which are of one checkpoint."""
+    from kitchen_prefs_leaderboard.scoring import score_submissions, shared_checkpoints
+
     entries = score_submissions(folders, jobs)
     for sentence in shared_checkpoints(entries):
         typer.echo(sentence, err=True)
-    write_page(rank(entries, verified), out)
-    typer.echo(f"The page is {out}; a browser opens it without a server.")
+    return entries
 
 
 @app.command()

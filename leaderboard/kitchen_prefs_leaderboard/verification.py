@@ -246,11 +246,13 @@ def _mean_scores(reruns: Sequence[Episodes]) -> dict[str, list[float]]:
 
 def _interval_of(episodes: Episodes, scores: Mapping[str, Sequence[float]]) -> Interval:
     """The mean of given scores over the sessions of some episodes."""
-    return mean_of_splits(list(episodes.values()), _given(episodes, scores))
+    return mean_of_splits(list(episodes.values()), in_its_session(episodes, scores))
 
 
-def _given(episodes: Episodes, scores: Mapping[str, Sequence[float]]) -> Callable[[Episode], float]:
-    """Given scores as a metric of the episodes of these sessions."""
+def in_its_session(
+    episodes: Episodes, scores: Mapping[str, Sequence[float]]
+) -> Callable[[Episode], float]:
+    """Scores of the sessions of some episodes, as a metric of any episode in these sessions."""
     of_session = {
         (e.split, e.session): value
         for split, of_split in episodes.items()
@@ -271,7 +273,7 @@ def _as_good_on_fresh(
         known: Compare the sessions of the training users, else those of all others.
     """
     ours, theirs = _of_users(published, known), _of_users(fresh, known)
-    before = mean_of_splits(ours, _given(published, scores))
+    before = mean_of_splits(ours, in_its_session(published, scores))
     after = mean_of_splits(theirs, score)
     sessions = hypot(before.mean - before.low, after.high - after.mean) / SIGNIFICANT
     users = 0.0 if known else _error_of_other_users(published, fresh)
