@@ -4,9 +4,10 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 from kitchen_prefs.metrics import Episode, Interval, mean_of_splits, score
+from kitchen_prefs_leaderboard.judgement import in_its_session
 from kitchen_prefs_leaderboard.scoring import MEAN, Entry
 from kitchen_prefs_leaderboard.submission_format import TRACKS
-from kitchen_prefs_leaderboard.verification import Verification, in_its_session
+from kitchen_prefs_leaderboard.verification import Verification
 
 
 @dataclass(frozen=True)
