@@ -106,10 +106,11 @@ def test_an_adapter_of_a_policy_on_the_hub_loads_in_a_process_of_its_own(tmp_pat
 def linked(folder, cache):
     """A folder of links to copies of files, as the hub's cache has it."""
     copytree(folder, cache / "blobs")
-    (cache / "snapshot").mkdir()
+    snapshot = cache / "snapshots/main"
+    snapshot.mkdir(parents=True)
     for file in (cache / "blobs").iterdir():
-        (cache / "snapshot" / file.name).symlink_to(file)
-    return cache / "snapshot"
+        (snapshot / file.name).symlink_to(file)
+    return snapshot
 
 
 def rename_below(adapter, name):

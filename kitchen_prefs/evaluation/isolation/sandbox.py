@@ -105,13 +105,23 @@ def _visible(readable: Iterable[Path]) -> list[Path]:
 
     Outer folders come first, as they would cover inner ones.
     """
-    imported_from = map(Path, filter(None, sys.path))
+    imported_from = map(Path, sys.path[1:])  # the first is the folder of this program alone
     wanted = [*map(Path, SYSTEM), Path(sys.prefix), Path(sys.base_prefix), *imported_from]
     for folder in readable:
-        # In the hub's cache a checkpoint's files are links.
-        wanted += [folder, *(file.resolve() for file in folder.iterdir())]
+        wanted += [folder, *_blobs(folder)]
     places = {place for one in wanted for place in (one.absolute(), one.resolve())}
     return sorted(place for place in places if place.exists())
+
+
+def _blobs(folder: Path) -> list[Path]:
+    """Where the files of a checkpoint are if it lies in the hub's cache, whose snapshots are links.
+
+    Other links are not followed: they may lead to files that are none of the policy's business.
+    """
+    repository = folder.resolve().parent.parent
+    blobs = repository / "blobs"
+    in_cache = folder.resolve().parent.name == "snapshots" and not blobs.is_symlink()
+    return [blobs] if in_cache else []
 
 
 def scrubbed_environment(scratch: Path, plugins: Path | None = None) -> dict[str, str]:

@@ -1,7 +1,6 @@
 """A policy's process: what it cannot see, and what happens when it does not behave."""
 
 import io
-import os
 import signal
 import subprocess
 import sys
@@ -135,31 +134,32 @@ def test_its_process_ends_with_this_one_even_while_it_sleeps(attackers, tmp_path
 from pathlib import Path
 from kitchen_prefs.evaluation.isolation import isolated_policy
 isolated_policy.PROGRAM = "hostile_process"
-settings, log = {{"policy_type": "sleeps"}}, Path({str(tmp_path / "log")!r})
-policy = isolated_policy.IsolatedPolicy(settings, log)
+settings = {{"policy_type": "sleeps", "options": [{str(tmp_path)!r}]}}
+policy = isolated_policy.IsolatedPolicy(settings, Path({str(tmp_path / "log")!r}))
 policy.reset()
-print(policy._process.pid, flush=True)
+print("asleep", flush=True)
 policy.act([dict()], [""])
 """
     with subprocess.Popen(
         [sys.executable, "-c", program], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL
     ) as parent:
         assert parent.stdout is not None
-        child = int(parent.stdout.readline())
+        parent.stdout.readline()
+        assert _processes_that_name(tmp_path)
         parent.send_signal(signal.SIGKILL)
     for _ in range(100):
-        if not _runs(child):
+        if not _processes_that_name(tmp_path):
             return
         time.sleep(0.1)
     raise AssertionError("the policy's process goes on")
 
 
-def _runs(pid):
-    try:
-        os.kill(pid, 0)
-    except ProcessLookupError:
-        return False
-    return "Z" not in Path(f"/proc/{pid}/stat").read_text().split()[2]
+def _processes_that_name(folder):
+    """The processes with a folder among their arguments, inside and outside of the sandbox."""
+    listed = subprocess.run(
+        ["ps", "-ww", "-eo", "args"], capture_output=True, text=True, check=True
+    )
+    return [line for line in listed.stdout.splitlines() if f'"options": ["{folder}"]' in line]
 
 
 @given(st.binary(max_size=200))

@@ -54,6 +54,7 @@ for attempt in (
     lambda: socket.socket(socket.AF_UNIX).connect(folder + "/service"),
     lambda: socket.create_connection(("127.0.0.1", 9)),
     lambda: pathlib.Path(secret).read_text(),
+    lambda: pathlib.Path(folder, "link").read_text(),
     lambda: pathlib.Path(folder, "hidden", "salt").read_text(),
     lambda: pathlib.Path(folder, "written").write_text(""),
     lambda: pathlib.Path(folder, "a mount", "written").write_text(""),
@@ -71,6 +72,7 @@ for attempt in (
 def test_a_process_starts_no_other_opens_no_socket_and_sees_nothing_else(confined, tmp_path):
     seen, secret = tmp_path / "seen", tmp_path / "secret"
     (seen / "hidden").mkdir(parents=True)
+    (seen / "link").symlink_to(secret)
     (seen / "a mount").mkdir()
     for file in (secret, seen / "hidden/salt"):
         file.write_text("12345")
@@ -85,7 +87,7 @@ def test_a_process_starts_no_other_opens_no_socket_and_sees_nothing_else(confine
     assert said.splitlines() == [
         "a thread runs",
         *["PermissionError Operation not permitted"] * 6,
-        *["FileNotFoundError No such file or directory"] * 2,
+        *["FileNotFoundError No such file or directory"] * 3,
         *["OSError Read-only file system"] * 4,
     ]
 
