@@ -26,7 +26,7 @@ BENCHMARK = {
     "physics": "preferences simulation splits utils",
     "rendering": "physics preferences simulation utils",
     "envs": "instances metrics preferences rendering simulation splits utils",
-    "datasets": "envs instances metrics preferences simulation splits utils",
+    "datasets": "envs instances metrics preferences rendering simulation splits utils",
     "evaluation": "envs metrics simulation splits utils",
     "cli": "datasets evaluation physics",
     "__init__": "datasets",
@@ -76,6 +76,7 @@ EXPERIMENTS = {
 LEADERBOARD = {
     "visible_text": "",
     "submission_format": "visible_text kitchen_prefs.envs kitchen_prefs.splits",
+    "plugin_identity": "submission_format",
     "submission_reading": "submission_format kitchen_prefs.splits",
     "replay": (
         "submission_format submission_reading kitchen_prefs.envs kitchen_prefs.instances "
@@ -94,21 +95,22 @@ LEADERBOARD = {
         "kitchen_prefs.splits kitchen_prefs.utils"
     ),
     "submission_writing": (
-        "replay submission_format kitchen_prefs.datasets kitchen_prefs.evaluation "
+        "plugin_identity replay submission_format kitchen_prefs.datasets kitchen_prefs.evaluation "
         "kitchen_prefs.metrics kitchen_prefs.splits kitchen_prefs.utils"
     ),
-    "verification": (
-        "scoring submission_format kitchen_prefs.metrics kitchen_prefs.splits kitchen_prefs.utils"
+    "verification": "submission_format kitchen_prefs.utils",
+    "judgement": (
+        "scoring submission_format verification kitchen_prefs.metrics kitchen_prefs.splits"
     ),
     "reruns": (
-        "scoring verification kitchen_prefs.evaluation kitchen_prefs.metrics "
+        "judgement scoring verification kitchen_prefs.evaluation kitchen_prefs.metrics "
         "kitchen_prefs.simulation kitchen_prefs.splits"
     ),
-    "ranking": "scoring submission_format verification kitchen_prefs.metrics",
+    "ranking": "judgement scoring submission_format verification kitchen_prefs.metrics",
     "score_formats": "scoring verification kitchen_prefs.metrics",
     "hub_upload": "scoring kitchen_prefs.splits kitchen_prefs.utils",
     "page": (
-        "ranking scoring verification kitchen_prefs.metrics kitchen_prefs.preferences "
+        "judgement ranking scoring kitchen_prefs.metrics kitchen_prefs.preferences "
         "kitchen_prefs.simulation kitchen_prefs.splits kitchen_prefs.utils"
     ),
     "commands": (

@@ -9,12 +9,16 @@ pretrained_model/
 
 import json
 from pathlib import Path
+from typing import Any
 
+import torch
 from lerobot.configs import PreTrainedConfig
 from lerobot.policies import PreTrainedPolicy, get_policy_class
 from lerobot.utils.import_utils import is_package_available
 from safetensors import SafetensorError
+from safetensors.torch import load_file
 
+BELOW = "base_model_name_or_path"  # the setting that names the policy
 ADAPTER_CONFIG = "adapter_config.json"
 ADAPTER_WEIGHTS = "adapter_model.safetensors"
 
@@ -30,14 +34,38 @@ def policy_below(folder: Path) -> str:
     Raises:
         ValueError: If the adapter's configuration is damaged or names no policy.
     """
+    path = _read_settings(folder).get(BELOW)
+    if not isinstance(path, str) or not path:
+        raise ValueError(
+            f"{folder / ADAPTER_CONFIG} does not name the policy that the adapter was trained on."
+        )
+    return path
+
+
+def read_adapter(folder: Path) -> tuple[dict[str, Any], dict[str, torch.Tensor]]:
+    """An adapter's settings, without where its policy lies, and its own weights.
+
+    Raises:
+        ValueError: If one of the files is damaged.
+    """
+    settings = _read_settings(folder)
+    settings.pop(BELOW, None)
+    try:
+        return settings, load_file(folder / ADAPTER_WEIGHTS)
+    except (SafetensorError, OSError) as error:
+        raise _damaged(folder / ADAPTER_WEIGHTS) from error
+
+
+def _read_settings(folder: Path) -> dict[str, Any]:
     file = folder / ADAPTER_CONFIG
     try:
-        path = json.loads(file.read_text())["base_model_name_or_path"]
-    except (OSError, ValueError, KeyError, TypeError) as error:
-        raise ValueError(f"{file} is damaged; give another checkpoint.") from error
-    if not isinstance(path, str) or not path:
-        raise ValueError(f"{file} does not name the policy that the adapter was trained on.")
-    return path
+        return dict(json.loads(file.read_text()))
+    except (OSError, ValueError, TypeError) as error:
+        raise _damaged(file) from error
+
+
+def _damaged(file: Path) -> ValueError:
+    return ValueError(f"{file} is damaged; give another checkpoint.")
 
 
 def read_adapted_policy(folder: Path, below: Path, config: PreTrainedConfig) -> PreTrainedPolicy:

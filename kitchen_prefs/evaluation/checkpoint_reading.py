@@ -26,6 +26,7 @@ from lerobot.processor.pipeline import ProcessorMigrationError
 from safetensors import SafetensorError
 
 from kitchen_prefs.evaluation.adapter_reading import (
+    ADAPTER_CONFIG,
     ADAPTER_WEIGHTS,
     is_adapter,
     policy_below,
@@ -74,6 +75,33 @@ def find_checkpoint(path: str) -> Path:
     return folder
 
 
+def find_policy_below(folder: Path) -> Path | None:
+    """Find the checkpoint that an adapter was trained on, on the disk or on the hub.
+
+    Args:
+        folder: A checkpoint.
+
+    Returns:
+        Its folder; None if the checkpoint is no adapter.
+
+    Raises:
+        ValueError: If it is not where the adapter says, or is an adapter itself.
+    """
+    if not is_adapter(folder):
+        return None
+    named = policy_below(folder)
+    try:
+        below = find_checkpoint(named)
+    except ValueError as error:
+        raise ValueError(
+            f"The adapter in {folder} was trained on {named}, which is not here; write that "
+            f"policy's folder, or its name on the hub, into {folder / ADAPTER_CONFIG}."
+        ) from error
+    if is_adapter(below):
+        raise ValueError(f"{below} is an adapter itself; train {folder} on a policy.")
+    return below
+
+
 def read_config(folder: Path, options: Sequence[str]) -> PreTrainedConfig:
     """Read the settings of a checkpoint's policy, with some of them overridden.
 
@@ -104,7 +132,10 @@ def setting_names(config_class: type[PreTrainedConfig]) -> list[str]:
 
 
 def read_policy(
-    folder: Path, config: PreTrainedConfig, options: Sequence[str] = ()
+    folder: Path,
+    config: PreTrainedConfig,
+    options: Sequence[str] = (),
+    below: Path | None = None,
 ) -> PreTrainedPolicy:
     """Load the policy of a checkpoint; unlike in LeRobot's factory, no weight may be missing.
 
@@ -112,15 +143,13 @@ def read_policy(
         folder: The checkpoint.
         config: Its settings.
         options: Those of them that were overridden.
+        below: The checkpoint that it was trained on, if it is an adapter.
 
     Raises:
         ValueError: If the weights are damaged or do not fit the policy.
     """
     try:
-        if is_adapter(folder):
-            below = find_checkpoint(policy_below(folder))
-            if is_adapter(below):
-                raise ValueError(f"{below} is an adapter itself; train {folder} on a policy.")
+        if below:
             return read_adapted_policy(folder, below, config)
         return get_policy_class(config.type).from_pretrained(folder, config=config, strict=True)
     except SafetensorError as error:

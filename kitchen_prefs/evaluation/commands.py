@@ -17,7 +17,6 @@ from kitchen_prefs.evaluation.policy_options import (
     ANY_SETTING,
     PolicyPath,
     PolicyType,
-    check_one_policy,
     settings_of,
 )
 from kitchen_prefs.metrics import FURTHER_METRICS, METRICS, Interval, reference_scores
@@ -113,19 +112,12 @@ def evaluate(
 def _isolated(
     path: str | None, policy_type: str | None, settings: list[str], track: str | None, out: Path
 ) -> "IsolatedPolicy":
-    from kitchen_prefs.evaluation.checkpoint_reading import find_checkpoint
     from kitchen_prefs.evaluation.isolation.isolated_policy import IsolatedPolicy
-    from kitchen_prefs.evaluation.isolation.sandbox import NO_SANDBOX, has_sandbox
+    from kitchen_prefs.evaluation.isolation.policy_settings import policy_settings
+    from kitchen_prefs.evaluation.isolation.sandbox import warn_without_sandbox
 
-    if not has_sandbox():
-        typer.echo(NO_SANDBOX, err=True)
-    check_one_policy(path, policy_type)
-    arguments = {
-        "path": path and str(find_checkpoint(path).resolve()),
-        "policy_type": policy_type,
-        "options": settings,
-        "track": track,
-    }
+    warn_without_sandbox()
+    arguments = policy_settings(path, policy_type, settings, track)
     return IsolatedPolicy(arguments, out / "policy.log", hidden=[out])
 
 

@@ -1,8 +1,6 @@
 """A LeRobot policy made ready to act: loaded, with its processors, known by a fingerprint."""
 
-import hashlib
-import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import prod
 from pathlib import Path
@@ -20,30 +18,20 @@ from lerobot.utils.constants import ACTION
 from lerobot.utils.import_utils import register_third_party_plugins
 
 from kitchen_prefs.envs.lerobot_env import OBS_INSTANCES, KitchenPrefsEnv
+from kitchen_prefs.evaluation.adapter_reading import read_adapter
 from kitchen_prefs.evaluation.checkpoint_reading import (
     find_checkpoint,
+    find_policy_below,
     read_config,
     read_policy,
     read_processors,
     setting_names,
 )
+from kitchen_prefs.evaluation.policy_fingerprint import Adapter, fingerprint
 from kitchen_prefs.evaluation.policy_options import check_one_policy
 from kitchen_prefs.utils.suggestions import check_settings, suggest
 
-# Settings that do not change what a policy does: where it runs, where it is stored, and what would
-# train it further.
-NOT_BEHAVIOUR = (
-    "device",
-    "license",
-    "optimizer",
-    "pretrained_path",
-    "pretrained_revision",
-    "private",
-    "push_to_hub",
-    "repo_id",
-    "scheduler",
-    "tags",
-)
+KNOWN_PACKAGES = ("lerobot", "lerobot_policy_kitchen_prefs")
 
 
 @dataclass(frozen=True)
@@ -55,12 +43,14 @@ class LoadedPolicy:
         preprocessor: Its pipeline from observations to inputs.
         postprocessor: Its pipeline from outputs to actions.
         track: The track whose observations it receives.
+        adapter: What is merged into the policy.
     """
 
     policy: PreTrainedPolicy
     preprocessor: PolicyProcessorPipeline
     postprocessor: PolicyProcessorPipeline
     track: str
+    adapter: Adapter | None = None
 
     def reset(self) -> None:
         """Clear the policy's state: a new batch of episodes begins."""
@@ -97,6 +87,12 @@ class LoadedPolicy:
         return self.policy.config.type
 
     @property
+    def plugin(self) -> str | None:
+        """The package that it comes from; None if that is LeRobot or this benchmark's."""
+        package = type(self.policy.config).__module__.partition(".")[0]
+        return None if package in KNOWN_PACKAGES else package
+
+    @property
     def parameters(self) -> int:
         """The number of its weights."""
         return sum(weight.numel() for weight in self.policy.parameters())
@@ -104,23 +100,7 @@ class LoadedPolicy:
     @property
     def fingerprint(self) -> str:
         """A hash of all weights and settings that change its behaviour, the processors' too."""
-        sha = hashlib.sha256()
-        settings = draccus.encode(self.policy.config, PreTrainedConfig)
-        _add(sha, settings, self.policy.state_dict())
-        for pipeline in (self.preprocessor, self.postprocessor):
-            for step in pipeline.steps:
-                _add(sha, {"step": type(step).__name__, **step.get_config()}, step.state_dict())
-        return sha.hexdigest()
-
-
-def _add(
-    sha: "hashlib._Hash", settings: dict[str, Any], weights: Mapping[str, torch.Tensor]
-) -> None:
-    kept = {name: value for name, value in settings.items() if name not in NOT_BEHAVIOUR}
-    sha.update(json.dumps(kept, sort_keys=True).encode())
-    for name, weight in sorted(weights.items()):
-        sha.update(name.encode())
-        sha.update(weight.detach().cpu().reshape(-1).view(torch.uint8).numpy().tobytes())
+        return fingerprint(self.policy, (self.preprocessor, self.postprocessor), self.adapter)
 
 
 def load_policy(
@@ -129,6 +109,7 @@ def load_policy(
     options: Sequence[str] = (),
     *,
     track: str | None = None,
+    below: str | None = None,
 ) -> LoadedPolicy:
     """Load a checkpoint, or make a policy that needs no training.
 
@@ -138,6 +119,8 @@ def load_policy(
         options: Settings of the policy to override, as in `--rule=expert`.
         track: The track of the environment; if not given, the track that the policy's settings
             ask for, or else the standard one.
+        below: The folder of the policy that an adapter was trained on; if not given, the one that
+            the adapter names.
 
     Returns:
         The policy, ready to act.
@@ -150,19 +133,27 @@ def load_policy(
     check_one_policy(path, policy_type)
     try:
         if path:
-            return _trained(find_checkpoint(path), options, track)
+            folder = find_checkpoint(path)
+            found = Path(below) if below else find_policy_below(folder)
+            return _trained(folder, options, track, found)
         return _untrained(str(policy_type), options, track)
     except ParsingError as error:
         raise ValueError(f"The policy's settings are wrong: {error.__cause__ or error}") from error
 
 
-def _trained(folder: Path, options: Sequence[str], track: str | None) -> LoadedPolicy:
+def _trained(
+    folder: Path, options: Sequence[str], track: str | None, below: Path | None
+) -> LoadedPolicy:
     config = read_config(folder, options)
     environment = _environment(config, track)
     _check_features(config, environment)
     preprocessor, postprocessor = read_processors(folder, config)
-    policy = read_policy(folder, config, options)
-    return LoadedPolicy(policy, preprocessor, postprocessor, environment.track)
+    policy = read_policy(folder, config, options, below)
+    adapter = None
+    if below:
+        adapted = _trained(below, (), track, None)
+        adapter = Adapter(*read_adapter(folder), adapted.fingerprint)
+    return LoadedPolicy(policy, preprocessor, postprocessor, environment.track, adapter)
 
 
 def _untrained(policy_type: str, options: Sequence[str], track: str | None) -> LoadedPolicy:

@@ -6,7 +6,7 @@ LeRobot and torch take seconds to import, so the commands import what needs them
 import os
 from enum import StrEnum
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 from rich.console import Console
@@ -14,6 +14,9 @@ from rich.console import Console
 from kitchen_prefs.evaluation.policy_options import ANY_SETTING, PolicyPath, PolicyType
 from kitchen_prefs.utils.files import at_work_alone, make_folder
 from kitchen_prefs_leaderboard.submission_format import UNSPECIFIED
+
+if TYPE_CHECKING:
+    from kitchen_prefs_leaderboard.scoring import Entry
 
 app = typer.Typer(
     name="leaderboard",
@@ -117,11 +120,8 @@ def score(
     kitchen-prefs leaderboard score leaderboard/submissions/* --format=csv --by=count
     """
     from kitchen_prefs_leaderboard import score_formats
-    from kitchen_prefs_leaderboard.scoring import score_submissions, shared_checkpoints
 
-    entries = score_submissions(folders, jobs)
-    for sentence in shared_checkpoints(entries):
-        typer.echo(sentence, err=True)
+    entries = _scored(folders, jobs)
     if form is Form.TABLE:
         for entry in entries:
             console.print(*score_formats.to_tables(entry, by), sep="\n")
@@ -179,18 +179,17 @@ def verify(
         return
     make_folder(out, "--out")
     make_folder(verifications, "--verifications")
-    from kitchen_prefs.evaluation.isolation.sandbox import NO_SANDBOX, has_sandbox
-    from kitchen_prefs_leaderboard.policy_runs import policy_settings
+    from kitchen_prefs.evaluation.isolation.sandbox import warn_without_sandbox
+    from kitchen_prefs_leaderboard.policy_runs import settings_on_track
     from kitchen_prefs_leaderboard.reruns import Rerunner, rerun_submission
     from kitchen_prefs_leaderboard.submission_writing import policy_of
 
-    if not has_sandbox():
-        typer.echo(NO_SANDBOX, err=True)
+    warn_without_sandbox()
     submission = read_known(folder)
-    settings = policy_settings(path, policy_type, context.args, submission.description.track)
+    settings = settings_on_track(path, policy_type, context.args, submission.description.track)
     rerunner = Rerunner(settings, out / submission.digest[:12], jobs, plugins)
     with at_work_alone(rerunner.folder):
-        verification.check_policy(submission.description, policy_of(rerunner.described))
+        verification.check_policy(submission.description, policy_of(rerunner.described, plugins))
         (entry,) = replay_submissions([submission], jobs)
         found = rerun_submission(entry, rerunner, salt, by)
     file = verification.write_verification(found, verifications)
@@ -217,17 +216,23 @@ def page(
     make_folder(out.parent, "--out")
     from kitchen_prefs_leaderboard.page.building import write_page
     from kitchen_prefs_leaderboard.ranking import rank
-    from kitchen_prefs_leaderboard.scoring import score_submissions, shared_checkpoints
     from kitchen_prefs_leaderboard.verification import read_verifications
 
     if verifications != KEPT and not verifications.is_dir():
         raise ValueError(f"There is no folder {verifications}; give another --verifications.")
     verified = read_verifications(verifications)
+    write_page(rank(_scored(folders, jobs), verified), out)
+    typer.echo(f"The page is {out}; a browser opens it without a server.")
+
+
+def _scored(folders: list[Path], jobs: int) -> "list[Entry]":
+    """Replay and score submissions, and say which are of one checkpoint."""
+    from kitchen_prefs_leaderboard.scoring import score_submissions, shared_checkpoints
+
     entries = score_submissions(folders, jobs)
     for sentence in shared_checkpoints(entries):
         typer.echo(sentence, err=True)
-    write_page(rank(entries, verified), out)
-    typer.echo(f"The page is {out}; a browser opens it without a server.")
+    return entries
 
 
 @app.command()

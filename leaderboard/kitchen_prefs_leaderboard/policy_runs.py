@@ -6,10 +6,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from kitchen_prefs.evaluation.checkpoint_reading import find_checkpoint
 from kitchen_prefs.evaluation.episode_files import read_episodes, read_header
+from kitchen_prefs.evaluation.isolation.policy_settings import policy_settings
 from kitchen_prefs.evaluation.policy_loading import LoadedPolicy, load_policy
-from kitchen_prefs.evaluation.policy_options import check_one_policy, settings_of
+from kitchen_prefs.evaluation.policy_options import settings_of
 from kitchen_prefs.metrics import Episode
 from kitchen_prefs.splits import TEST_SPLITS, get_split
 from kitchen_prefs.utils.processes import run_module
@@ -93,17 +93,15 @@ def load_policy_run(
     Raises:
         ValueError: If there is no such track, or if it cannot be loaded, see `load_policy`.
     """
-    loaded_policy = load_policy(**policy_settings(path, policy_type, settings, track))
+    loaded_policy = load_policy(**settings_on_track(path, policy_type, settings, track))
     policy = f"--policy.path={path}" if path else f"--policy.type={policy_type}"
     return PolicyRun(loaded_policy, (policy, *settings, f"--track={loaded_policy.track}"))
 
 
-def policy_settings(
+def settings_on_track(
     path: str | None, policy_type: str | None, settings: Sequence[str], track: str
 ) -> dict[str, Any]:
     """The arguments of `load_policy` that load a policy for a track of the leaderboard.
-
-    Nothing of the policy is imported. A checkpoint on the hub is downloaded.
 
     Args:
         path: A checkpoint.
@@ -116,10 +114,5 @@ def policy_settings(
     """
     if track not in TRACKS:
         raise ValueError(f"There is no track {track!r}. {suggest(track, TRACKS)}")
-    check_one_policy(path, policy_type)
-    return {
-        "path": path and str(find_checkpoint(path).resolve()),
-        "policy_type": policy_type,
-        "options": settings_of(settings),
-        "track": None if track == "open" else track,
-    }
+    options = settings_of(settings)
+    return policy_settings(path, policy_type, options, None if track == "open" else track)

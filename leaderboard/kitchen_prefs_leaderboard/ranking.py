@@ -1,9 +1,10 @@
 """The order of the entries: by Score, with ties where the difference is not significant."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 from kitchen_prefs.metrics import Episode, Interval, mean_of_splits, score
+from kitchen_prefs_leaderboard.judgement import in_its_session
 from kitchen_prefs_leaderboard.scoring import MEAN, Entry
 from kitchen_prefs_leaderboard.submission_format import TRACKS
 from kitchen_prefs_leaderboard.verification import Verification
@@ -79,20 +80,13 @@ def lead(first: Row, second: Row) -> Interval:
 
     The paired bootstrap: the sessions' differences are resampled.
     """
-    ours, theirs = _scores(first), _scores(second)
-
-    def gain(episode: Episode) -> float:
-        session = episode.split, episode.session
-        return ours[session] - theirs[session]
-
-    return mean_of_splits(list(first.entry.episodes.values()), gain)
+    ours, theirs = _score_that_counts(first), _score_that_counts(second)
+    return mean_of_splits(list(first.entry.episodes.values()), lambda e: ours(e) - theirs(e))
 
 
-def _scores(row: Row) -> dict[tuple[str, int], float]:
-    """The Score that counts in each session."""
+def _score_that_counts(row: Row) -> Callable[[Episode], float]:
+    """A row's Score in the session of an episode, of any row's."""
+    episodes = row.entry.episodes
     recorded = row.verification.scores if row.verification else None
-    return {
-        (split, episode.session): recorded[split][i] if recorded else score(episode)
-        for split, episodes in row.entry.episodes.items()
-        for i, episode in enumerate(episodes)
-    }
+    replayed = {split: [score(e) for e in of_split] for split, of_split in episodes.items()}
+    return in_its_session(episodes, recorded or replayed)

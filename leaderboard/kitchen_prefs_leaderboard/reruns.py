@@ -26,13 +26,9 @@ from kitchen_prefs.evaluation.rollouts import BATCH_SIZE, roll_out
 from kitchen_prefs.metrics import Episode
 from kitchen_prefs.simulation.sessions import FRESH_USERS, PUBLISHED_USERS
 from kitchen_prefs.splits import TEST_SPLITS, get_split
+from kitchen_prefs_leaderboard.judgement import STOCHASTIC_RUNS, compare, needs_more_runs
 from kitchen_prefs_leaderboard.scoring import Entry
-from kitchen_prefs_leaderboard.verification import (
-    STOCHASTIC_RUNS,
-    Verification,
-    compare,
-    needs_more_runs,
-)
+from kitchen_prefs_leaderboard.verification import Verification
 
 Episodes = dict[str, list[Episode]]  # of each test split, in the order of the sessions
 Batch = tuple["Run", str, tuple[int, ...]]  # a run, a split and some of its sessions

@@ -59,6 +59,20 @@ class Strict(BaseModel):
     model_config = ConfigDict(strict=True, extra="forbid", frozen=True, allow_inf_nan=False)
 
 
+class Plugin(Strict):
+    """The package of a policy from elsewhere, see `plugin_identity`.
+
+    Attributes:
+        distribution: The name under which it is installed.
+        version: Its version.
+        code: The hash of its files.
+    """
+
+    distribution: Name
+    version: Name
+    code: Hash
+
+
 class Policy(Strict):
     """The policy that chose the actions.
 
@@ -67,11 +81,13 @@ class Policy(Strict):
         parameters: The number of learned parameters; None where that does not apply.
         checkpoint: The fingerprint of a LeRobot checkpoint; None for another program, whose
             actions can be replayed but not re-run.
+        plugin: Where its code comes from; None for LeRobot's policies and this repository's.
     """
 
     type: Name
     parameters: Annotated[int, Field(ge=0, le=10**13)] | None = None
     checkpoint: Hash | None = None
+    plugin: Plugin | None = None
 
 
 class Submission(Strict):

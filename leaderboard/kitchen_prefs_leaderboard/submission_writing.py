@@ -17,6 +17,7 @@ from kitchen_prefs.evaluation.policy_loading import LoadedPolicy
 from kitchen_prefs.metrics import Episode
 from kitchen_prefs.splits import DATA_VERSION, TEST_SPLITS
 from kitchen_prefs.utils.files import atomic_folder
+from kitchen_prefs_leaderboard.plugin_identity import find_plugin
 from kitchen_prefs_leaderboard.replay import to_jsonl, write_line
 from kitchen_prefs_leaderboard.submission_format import (
     ACTIONS,
@@ -58,7 +59,9 @@ def write_submission(
             lines = to_jsonl([write_line(episode) for episode in episodes])
             # A fifth smaller than gzip, and without a time stamp: equal actions give equal bytes.
             (unfinished / ACTIONS[split]).write_bytes(bz2.compress(lines))
-        (unfinished / DESCRIPTION).write_text(submission.model_dump_json(indent=2) + "\n")
+        absent = None if submission.policy.plugin else {"policy": {"plugin"}}
+        description = submission.model_dump_json(indent=2, exclude=absent)
+        (unfinished / DESCRIPTION).write_text(f"{description}\n")
 
 
 def describe(**about: Any) -> Submission:
@@ -86,14 +89,24 @@ def describe(**about: Any) -> Submission:
         raise ValueError(f"This cannot be submitted: {complaint(error)}") from error
 
 
-def policy_of(policy: LoadedPolicy | IsolatedPolicy) -> Policy:
+def policy_of(policy: LoadedPolicy | IsolatedPolicy, plugins: Path | None = None) -> Policy:
     """A LeRobot policy as a submission describes it.
 
+    Args:
+        policy: The policy.
+        plugins: A folder of packages that its process alone imports from.
+
     Raises:
-        ValueError: If its own process describes it in another way.
+        ValueError: If its own process describes it in another way, or if its plug-in is not
+            installed.
     """
     try:
-        return Policy(type=policy.type, parameters=policy.parameters, checkpoint=policy.fingerprint)
+        return Policy(
+            type=policy.type,
+            parameters=policy.parameters,
+            checkpoint=policy.fingerprint,
+            plugin=find_plugin(policy.plugin, plugins) if policy.plugin else None,
+        )
     except ValidationError as error:
         raise ValueError(f"The policy describes itself wrongly: {complaint(error)}") from error
 

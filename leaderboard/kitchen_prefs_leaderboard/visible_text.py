@@ -5,6 +5,8 @@ import re
 import unicodedata
 from urllib.parse import urlsplit
 
+from confusable_homoglyphs.confusables import confusables_data
+
 # Letters and marks that are not drawn (Unicode's Default_Ignorable_Code_Point among them) and the
 # braille pattern of no dots.
 INVISIBLE = re.compile(
@@ -13,6 +15,8 @@ INVISIBLE = re.compile(
 )
 MOST_MARKS = 2  # accents on one letter; more are stacked over the lines above
 DYNAMIC_DATA = "|"  # a spreadsheet's cell could start a program through it
+# Small letters of which some form looks like another: I, l and 1; O and 0.
+ONE_LETTER = str.maketrans("i10", "llo")
 # Scripts that are written together.
 TOGETHER = ({"CJK", "HIRAGANA", "KATAKANA"}, {"CJK", "HANGUL"}, {"CJK", "BOPOMOFO"})
 
@@ -43,9 +47,23 @@ def check_visible(text: str) -> str:
 
 
 def alike_key(name: str) -> str:
-    """What two names have in common that a reader takes for one: letters and digits alone."""
-    plain = unicodedata.normalize("NFKD", name.casefold())
-    return "".join(character for character in plain if character.isalnum())
+    """What two names have in common that a reader takes for one.
+
+    Letters and digits alone count, without case and accents; each that looks like a Latin letter is
+    that letter, whatever its script (Unicode's confusable characters).
+    """
+    plain = unicodedata.normalize("NFKD", name)
+    latin = "".join(_latin(character) for character in plain if character.isalnum())
+    return latin.translate(ONE_LETTER).replace("rn", "m")
+
+
+def _latin(character: str) -> str:
+    """The small Latin letter or digit that a character, or its capital, looks like, or itself."""
+    for form in (character, character.upper()):
+        for looks in (form, *(other["c"] for other in confusables_data.get(form, ()))):
+            if looks.isascii() and looks.isalnum():
+                return looks.lower()
+    return character.casefold()
 
 
 def check_public_link(link: str) -> str:

@@ -22,6 +22,9 @@ def serve(settings, requests, replies):
         replies.flush()
     policy_process.send(replies, **describe)
     requests.read(1)
+    while behaviour == "dawdles":  # and answers each time just before it would be ended
+        time.sleep(0.1)
+        policy_process.send(replies, {"actions": np.zeros((1, 7))})
     if behaviour == "sleeps":
         time.sleep(3600)
     if behaviour == "exits":

@@ -18,12 +18,14 @@ from kitchen_prefs_leaderboard import commands, scoring
 from kitchen_prefs_leaderboard.page.building import write_page
 from kitchen_prefs_leaderboard.ranking import rank
 from kitchen_prefs_leaderboard.scoring import Entry, score_submissions
+from kitchen_prefs_leaderboard.submission_format import Plugin, Policy
 from kitchen_prefs_leaderboard.verification import ScoreInterval, Verification
 
 CHROMIUM = Path("/usr/bin/chromium")
 PATIENCE = 120_000  # milliseconds; the machine may be busy
 HTML_NAME = "<img src=x onerror=document.title='run'></script><b>"
 SCORES = Path(__file__).parents[2] / "leaderboard" / "scores.json"
+PLUGIN = Plugin(distribution="lerobot_policy_elsewhere", version="1.2", code="c" * 64)
 PHONE = {"width": 390, "height": 844}
 
 pytestmark = [
@@ -67,6 +69,8 @@ def entries(expert_submission):
 
     def other(name, track, episodes):
         about = {"name": name, "track": track, "link": "https://example.org/?a=1&b=2"}
+        if track == "open":
+            about["policy"] = Policy(type="elsewhere", plugin=PLUGIN)
         return Entry(expert.submission.model_copy(update=about), name, episodes)
 
     return [
@@ -158,6 +162,13 @@ def test_ranked_rows_come_first_and_the_others_have_no_rank(page):
     assert names(page) == ["Honest", "Careless"]
     ranks = page.locator('[data-track="privileged"] td.rank').all_text_contents()
     assert ranks == ["1", "\u2013", "\u2013"]
+
+
+def test_a_row_tells_which_code_a_policy_from_elsewhere_has(page):
+    of_row = page.locator("tr details", has_text=HTML_NAME)
+    told = page.locator("tr details dt", has_text="Plug-in").locator("+ dd").all_text_contents()
+    assert told == [f"lerobot_policy_elsewhere 1.2, code {'c' * 64}"]
+    assert of_row.locator("dt", has_text="Plug-in").count() == 1
 
 
 def test_a_tie_shows(tables, tmp_path, browser):

@@ -4,10 +4,10 @@ import json
 
 import pytest
 
+from kitchen_prefs_leaderboard.judgement import compare
 from kitchen_prefs_leaderboard.ranking import Row, lead, rank
 from kitchen_prefs_leaderboard.scoring import MEAN, score_submissions
 from kitchen_prefs_leaderboard.submission_writing import write_submission
-from kitchen_prefs_leaderboard.verification import compare
 
 
 def confirmed(entry, rerun, fresh):

@@ -27,7 +27,7 @@ def test_a_policy_that_reads_its_neighbours_in_the_batch_is_not_confirmed(
         name="Neighbours",
         authors=["A. Attacker"],
         track="standard",
-        policy=policy_of(rerunner.described),
+        policy=policy_of(rerunner.described, ATTACKERS),
         hardware="none",
         training="none",
     )

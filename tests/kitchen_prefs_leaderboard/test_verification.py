@@ -5,13 +5,13 @@ from dataclasses import replace
 
 import pytest
 
+from kitchen_prefs_leaderboard.judgement import compare
 from kitchen_prefs_leaderboard.ranking import rank
 from kitchen_prefs_leaderboard.scoring import score_submissions
 from kitchen_prefs_leaderboard.submission_format import Policy
 from kitchen_prefs_leaderboard.submission_writing import write_submission
 from kitchen_prefs_leaderboard.verification import (
     check_policy,
-    compare,
     read_verifications,
     write_verification,
 )

@@ -46,6 +46,33 @@ def test_names_that_read_alike_have_one_key():
 
 
 @pytest.mark.parametrize(
+    ("name", "other"),
+    [
+        ("\u0422\u0422\u0420", "TTP"),  # Cyrillic
+        ("\u0442\u0442\u0440", "ttp"),
+        ("\u0455\u0443\u043c\u042c\u043e\u04cf\u0456\u0441", "symbolic"),
+        ("\u03a4\u03a4\u03a1", "ttp"),  # Greek
+        ("\u13a2\u13a2\u13e2", "TTP"),  # Cherokee
+        ("\ua4d4\ua4d4\ua4d1", "TTP"),  # Lisu
+        ("ttp_p1us", "ttp_plus"),
+        ("ttp_pIus", "TTP PLUS"),
+        ("r\u0251ndom", "random"),  # Latin letters of phonetics
+        ("rnajority", "majority"),
+        ("gnn_rI_32k", "gnn_rl_32K"),
+        ("b0", "BO"),
+    ],
+)
+def test_names_of_letters_that_look_alike_have_one_key(name, other):
+    assert check_visible(name) == name
+    assert alike_key(name) == alike_key(other)
+
+
+def test_names_in_other_letters_that_look_like_no_latin_ones_stay_apart():
+    names = ["\u504f\u597d", "\u504f\u884c", "\u0434\u0436", "\u0434\u0444", "\u05d0\u05d1", "dz"]
+    assert len({alike_key(name) for name in names}) == len(names)
+
+
+@pytest.mark.parametrize(
     "link",
     [
         "https://github.com@evil.example/",

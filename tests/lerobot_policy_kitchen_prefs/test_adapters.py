@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from pathlib import Path
+from shutil import copytree
 
 import numpy as np
 import pytest
@@ -10,10 +11,12 @@ from act_checkpoints import rewrite
 from lerobot.configs import PreTrainedConfig
 from lerobot.policies import get_policy_class, make_pre_post_processors
 from lerobot.utils.import_utils import is_package_available
+from safetensors.torch import load_file, save_file
 
 from kitchen_prefs.envs.environment import DishwasherLoading
-from kitchen_prefs.evaluation import adapter_reading
+from kitchen_prefs.evaluation import adapter_reading, checkpoint_reading
 from kitchen_prefs.evaluation.isolation.isolated_policy import IsolatedPolicy
+from kitchen_prefs.evaluation.isolation.policy_settings import policy_settings
 from kitchen_prefs.evaluation.policy_loading import load_policy
 
 CHECKPOINTS = Path(__file__).parents[2] / "policies/checkpoints"
@@ -72,7 +75,10 @@ def test_a_damaged_adapter_is_one_sentence(tmp_path):
         load_policy(str(tmp_path))
     (tmp_path / "adapter_config.json").write_text('{"base_model_name_or_path": "nowhere/at-all"}')
     weights.write_bytes(whole)
-    with pytest.raises(ValueError, match="There is no policy in nowhere/at-all"):
+    with pytest.raises(
+        ValueError,
+        match=r"The adapter in .* was trained on nowhere/at-all, which is not here; write",
+    ):
         load_policy(str(tmp_path))
 
 
@@ -85,16 +91,62 @@ def test_without_peft_an_adapter_says_what_to_install(tmp_path, monkeypatch):
 
 
 @needs_peft
-def test_an_adapter_of_a_relative_path_loads_in_a_process_of_its_own(tmp_path, monkeypatch):
-    monkeypatch.chdir(CHECKPOINTS.parents[1])
-    save_adapter("gnn_tuned", tmp_path / "adapter")
-    config = tmp_path / "adapter" / "adapter_config.json"
-    rewrite(config, lambda found: found.update(base_model_name_or_path=relative("gnn_tuned")))
-    here = load_policy(str(tmp_path / "adapter"))
-    settings = {"path": str(tmp_path / "adapter"), "track": "privileged"}
+def test_an_adapter_of_a_policy_on_the_hub_loads_in_a_process_of_its_own(tmp_path, monkeypatch):
+    adapter = tmp_path / "adapter"
+    save_adapter("gnn_tuned", adapter)
+    known = load_policy(str(adapter)).fingerprint
+    rename_below(adapter, "somebody/gnn_tuned")
+    cache = linked(CHECKPOINTS / "gnn_tuned", tmp_path / "cache")
+    monkeypatch.setattr(checkpoint_reading, "snapshot_download", lambda *_, **__: str(cache))
+    settings = policy_settings(str(adapter), None, (), "privileged")
     with IsolatedPolicy(settings, tmp_path / "log") as policy:
-        assert policy.fingerprint == here.fingerprint
+        assert policy.fingerprint == known
 
 
-def relative(name):
-    return str((CHECKPOINTS / name).relative_to(CHECKPOINTS.parents[1]))
+def linked(folder, cache):
+    """A folder of links to copies of files, as the hub's cache has it."""
+    copytree(folder, cache / "blobs")
+    snapshot = cache / "snapshots/main"
+    snapshot.mkdir(parents=True)
+    for file in (cache / "blobs").iterdir():
+        (snapshot / file.name).symlink_to(file)
+    return snapshot
+
+
+def rename_below(adapter, name):
+    rewrite(
+        adapter / "adapter_config.json", lambda found: found.update(base_model_name_or_path=name)
+    )
+
+
+@needs_peft
+def test_an_adapter_is_known_by_its_own_weights_and_the_policy_below_it(tmp_path, monkeypatch):
+    adapter, below = tmp_path / "adapter", tmp_path / "below"
+    save_adapter("gnn_paper", adapter)
+    known = load_policy(str(adapter)).fingerprint
+    read = checkpoint_reading.read_adapted_policy
+
+    def merged_otherwise(*arguments):
+        policy = read(*arguments)
+        with torch.no_grad():
+            next(policy.parameters()).add_(1e-6)  # as another processor rounds
+        return policy
+
+    with monkeypatch.context() as here:
+        here.setattr(checkpoint_reading, "read_adapted_policy", merged_otherwise)
+        assert load_policy(str(adapter)).fingerprint == known
+    copytree(CHECKPOINTS / "gnn_paper", below)
+    rename_below(adapter, str(below))
+    assert load_policy(str(adapter)).fingerprint == known
+    change(below / "model.safetensors")
+    assert load_policy(str(adapter)).fingerprint != known
+    rename_below(adapter, str(CHECKPOINTS / "gnn_paper"))
+    change(adapter / "adapter_model.safetensors")
+    assert load_policy(str(adapter)).fingerprint != known
+
+
+def change(file):
+    """Change one weight."""
+    weights = load_file(file)
+    next(iter(weights.values())).view(-1)[0] += 1
+    save_file(weights, file)

@@ -2,6 +2,8 @@
 
 isolated_policy  starts the process and talks to it; to `roll_out` it is a policy like another
 messages         the format of what passes through the pipe
+policy_settings  where its checkpoint lies
 policy_process   the program of the process: loads the policy and acts
-sandbox          no network, no other processes, nothing to write to, bounded memory
+sandbox          no network, no other processes, nothing else of the disk to read or to write to
+system_calls     what the kernel refuses to the process: others beside it, and sockets
 """

@@ -11,12 +11,13 @@ from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from time import monotonic
 from typing import Any, Self
 
 import numpy as np
 
 from kitchen_prefs.evaluation.isolation.messages import PipeClosedError, receive, send
-from kitchen_prefs.evaluation.isolation.sandbox import confined, scrubbed_environment
+from kitchen_prefs.evaluation.isolation.sandbox import scrubbed_environment, start_confined
 
 PROGRAM = "kitchen_prefs.evaluation.isolation.policy_process"
 ACTION_BYTES = 7 * 4  # a pose of float32
@@ -31,18 +32,22 @@ class Limits:
         memory: Bytes of data. The CUDA build of torch has 1 GB before a policy is loaded.
         loading: Seconds until the policy is loaded; LeRobot alone takes ten on a busy core.
         decision: Seconds for the actions of one batch.
+        average: Seconds for the action of one episode, on average over all of them, so that the
+            number of decisions bounds the time of a re-run. Our slowest policy, `ttp_paper`, takes
+            0.3 in a batch of its own on a busy core.
     """
 
     memory: int = 8 * 1024**3
     loading: float = 300.0
     decision: float = 60.0
+    average: float = 2.0
 
 
 class IsolatedPolicy:
     """A policy in a process of its own, for `roll_out`; a context manager that ends the process.
 
     Args:
-        settings: The arguments of `load_policy`; a path names a folder.
+        settings: The arguments of `load_policy`, see `policy_settings`.
         log: What the process prints.
         hidden: Folders that the process must not see.
         plugins: A folder of packages that it alone imports from, with the policy's code.
@@ -53,6 +58,7 @@ class IsolatedPolicy:
     Attributes:
         type: The policy's type. This and the others are what the process says of its policy: a
             claim that the evaluation cannot prove.
+        plugin: The package that it comes from, see `LoadedPolicy`.
         parameters: The number of its weights.
         fingerprint: The hash of its weights and settings.
         track: The track whose observations it receives: the one of the settings, or else its own.
@@ -78,19 +84,22 @@ class IsolatedPolicy:
         self._track = settings.get("track")
         self._scratch = TemporaryDirectory(prefix="kitchen_prefs_policy_")
         scratch = Path(self._scratch.name)
-        started = {"memory": self._limits.memory, "folder": str(Path.cwd())}
-        arguments = json.dumps(settings | started)
+        arguments = json.dumps(settings | {"memory": self._limits.memory})
         command = [sys.executable, "-P", "-m", PROGRAM, arguments]
+        folders = (settings.get("path"), settings.get("below"), plugins)
         with log.open("ab") as file:
-            self._process = subprocess.Popen(
-                confined(command, scratch, hidden),
+            self._process = start_confined(
+                command,
+                scratch,
+                readable=[Path(folder) for folder in folders if folder],
+                hidden=hidden,
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
                 stderr=file,
-                cwd=scratch,
                 env=scrubbed_environment(scratch, plugins),
                 start_new_session=True,
             )
+        self._seconds_left = self._limits.loading
         try:
             self._introduce()
         except BaseException:
@@ -114,6 +123,7 @@ class IsolatedPolicy:
         """Choose actions for B episodes at once, see `rollouts.Policy`."""
         batch = {name: np.stack([one[name] for one in observations]) for name in observations[0]}
         with self._answering("decide", self._limits.decision):
+            self._seconds_left += len(tasks) * self._limits.average
             send(self._pipe_in, batch, tasks=tasks)
             _, arrays = receive(self._pipe_out, ACTION_BYTES * len(tasks))
             actions = arrays.get("actions")
@@ -144,11 +154,15 @@ class IsolatedPolicy:
             head, _ = receive(self._pipe_out, 0)
             if isinstance(head.get("refused"), str):
                 raise ValueError(printable(head["refused"]))
-            named = (head.get(name) for name in ("type", "fingerprint", "track"))
-            if not (all(isinstance(n, str) for n in named) and "parameters" in head):
+            named = [head.get(name) for name in ("type", "fingerprint", "track")]
+            plugin = head.get("plugin")
+            as_it_must = all(isinstance(n, str) for n in [*named, plugin or ""])
+            if not (as_it_must and "parameters" in head):
                 raise PipeClosedError
+        self._seconds_left = self._limits.decision  # a policy warms up
         self.type, self.fingerprint = head["type"], head["fingerprint"]
         self.parameters, self.track = head["parameters"], self._track or head["track"]
+        self.plugin = plugin
 
     @contextmanager
     def _answering(self, what: str, seconds: float) -> Iterator[None]:
@@ -159,7 +173,7 @@ class IsolatedPolicy:
             late.set()
             self._kill()
 
-        timer = threading.Timer(seconds, end)
+        timer, begun = threading.Timer(seconds, end), monotonic()
         timer.start()
         try:
             yield
@@ -170,6 +184,12 @@ class IsolatedPolicy:
             ) from error
         finally:
             timer.cancel()
+        self._seconds_left -= monotonic() - begun
+        if self._seconds_left < 0:
+            raise ValueError(
+                f"The policy takes more than {self._limits.average:g} s a decision on average; "
+                "make it faster."
+            )
 
     def _kill(self) -> None:
         if self._process.poll() is None:

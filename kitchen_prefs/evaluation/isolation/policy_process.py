@@ -9,7 +9,6 @@ import json
 import os
 import resource
 import sys
-from contextlib import chdir
 from typing import BinaryIO
 
 from kitchen_prefs.evaluation.isolation.messages import PipeClosedError, receive, send
@@ -21,8 +20,7 @@ MOST_OBSERVATION = 256 * 1024 * 1024  # bytes; a batch of 16 with one prompt eac
 def main() -> None:
     """Serve one policy.
 
-    SETTINGS is a JSON object of `load_policy`'s arguments, the memory that the process may take,
-    and the folder where relative paths begin, as an adapter names its policy.
+    SETTINGS is a JSON object of `load_policy`'s arguments and the memory that the process may take.
     """
     settings = json.loads(sys.argv[1])
     memory = settings.pop("memory")
@@ -38,7 +36,7 @@ def serve(settings: dict, requests: BinaryIO, replies: BinaryIO) -> None:
     """Load a policy and answer requests until there are no more.
 
     Args:
-        settings: The arguments of `load_policy`, and the folder where relative paths begin.
+        settings: The arguments of `load_policy`.
         requests: Messages with a seed, which begin a batch of episodes, or with observations.
         replies: What the policy is, then the actions for each batch of observations, (B, 7).
     """
@@ -46,16 +44,15 @@ def serve(settings: dict, requests: BinaryIO, replies: BinaryIO) -> None:
 
     from kitchen_prefs.evaluation.policy_loading import load_policy
 
-    folder = settings.pop("folder")
     try:
-        with chdir(folder):
-            loaded = load_policy(**settings)
+        loaded = load_policy(**settings)
     except ValueError as error:  # a sentence for whoever named the policy
         send(replies, refused=str(error))
         return
     send(
         replies,
         type=loaded.type,
+        plugin=loaded.plugin,
         parameters=loaded.parameters,
         fingerprint=loaded.fingerprint,
         track=loaded.track,

@@ -1,70 +1,127 @@
 """How the platform confines a policy's process.
 
-On Linux where users may make namespaces, the process has no network, sees no other process, can
-write to its scratch folder alone, and does not see folders that are hidden from it, `/run` among
-them. It can read the rest of the disk, and open sockets that lie there. Elsewhere it is only a
-process of its own, and `NO_SANDBOX` says so.
+On Linux with bubblewrap the process has a root of its own: it sees Python, the packages, the
+checkpoint and nothing else of the disk, and can write to a scratch folder in memory alone. It has
+no network, sees no other process, and cannot start one. Elsewhere it is only a process of its own,
+and `warn_without_sandbox` says so.
 """
 
 import os
 import shutil
 import subprocess
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from functools import lru_cache
 from pathlib import Path
+from tempfile import gettempdir
+from typing import Any
 
+from kitchen_prefs.evaluation.isolation.system_calls import system_call_filter
 from kitchen_prefs.utils.processes import ending_with_this
 
 NO_SANDBOX = (
-    "This platform gives no namespaces (`unshare` and `setpriv` of util-linux on Linux), so the "
-    "policy's process can read files and use the network; run policies of strangers elsewhere."
+    "This platform confines no process (bubblewrap 0.7 or newer on Linux, where users may make "
+    "namespaces), so the policy's process can read files and use the network; run policies of "
+    "strangers elsewhere."
 )
 # Variables that the process keeps: where programs, libraries and plug-ins are, and nothing else.
 KEPT_VARIABLES = ("PATH", "PYTHONPATH", "LD_LIBRARY_PATH", "VIRTUAL_ENV", "LANG")
-NAMESPACES = (
-    *("unshare", "--user", "--map-root-user", "--net", "--ipc", "--uts", "--mount"),
-    *("--pid", "--fork", "--kill-child", "--mount-proc"),
+# The system's programs and libraries, how they are found, and the names of users.
+SYSTEM = (
+    *("/usr", "/bin", "/lib", "/lib64", "/nix/store"),
+    *("/etc/ld.so.cache", "/etc/alternatives", "/etc/localtime", "/etc/passwd"),
 )
-SERVICES = (Path("/run"),)  # their sockets are files, which a process without a network may open
-# Arguments: the scratch folder, hidden folders, --, the command. The scratch folder is in memory
-# and seen by this process alone, so that policies in several processes cannot exchange what they
-# observe. Every other mount becomes read-only; without capabilities the command cannot undo it.
-CONFINE = """
-scratch=$1; shift
-mount -t tmpfs -o size=256m none "$scratch" && cd "$scratch" || exit 125
-while [ "$1" != -- ]; do mount -t tmpfs -o size=4k none "$1" || exit 125; shift; done
-shift
-while read -r _ _ _ _ point options _; do
-    case $point in "$scratch" | /proc) continue ;; esac
-    kept=$(echo "$options" | tr , '\\n' | grep -E 'nosuid|nodev|noexec|atime' | paste -sd,)
-    mount -o "remount,bind,ro${kept:+,$kept}" "$point" 2>/dev/null
-done < /proc/self/mountinfo
-exec setpriv --no-new-privs --inh-caps=-all --bounding-set=-all "$@"
-"""
+SCRATCH_BYTES = 256 * 1024 * 1024
 
 
 @lru_cache
 def has_sandbox() -> bool:
     """Whether this platform can confine a process."""
-    if not (sys.platform == "linux" and shutil.which("unshare") and shutil.which("setpriv")):
+    if not (sys.platform == "linux" and shutil.which("bwrap")):
         return False
-    return subprocess.run([*NAMESPACES, "true"], capture_output=True, check=False).returncode == 0
+    process = start_confined(["true"], Path(gettempdir()), stderr=subprocess.DEVNULL, confine=True)
+    return process.wait() == 0
 
 
-def confined(command: Sequence[str], scratch: Path, hidden: Sequence[Path]) -> list[str]:
-    """A command as it is run in the sandbox, or as it is where there is none.
+def warn_without_sandbox() -> None:
+    """Say where this platform cannot confine a process."""
+    if not has_sandbox():
+        print(NO_SANDBOX, file=sys.stderr)
+
+
+def start_confined(
+    command: Sequence[str],
+    scratch: Path,
+    *,
+    readable: Iterable[Path] = (),
+    hidden: Iterable[Path] = (),
+    confine: bool | None = None,
+    **popen: Any,
+) -> subprocess.Popen:
+    """Start a command in the sandbox, or as it is where there is none; it ends with this process.
 
     Args:
         command: The command.
-        scratch: The one folder that it may write to.
-        hidden: Folders that it must not see; they exist.
+        scratch: The one folder that it may write to, in memory and seen by it alone, so that
+            policies in several processes cannot exchange what they observe.
+        readable: Folders that it needs beside Python and the packages.
+        hidden: Folders that it must not see though they lie in those that it sees.
+        confine: Whether to confine it; if not given, where this platform can.
+        **popen: More arguments of `subprocess.Popen`.
     """
-    if not has_sandbox():
-        return ending_with_this(command)
-    services = [folder for folder in SERVICES if folder.is_dir()]
-    folders = [str(folder.resolve()) for folder in (scratch, *hidden, *services)]
-    return ending_with_this([*NAMESPACES, "sh", "-c", CONFINE, "sh", *folders, "--", *command])
+    if not (has_sandbox() if confine is None else confine):
+        return subprocess.Popen(ending_with_this(command), cwd=scratch, **popen)
+    with system_call_filter() as descriptor:
+        bubblewrap = [
+            *("bwrap", "--unshare-all", "--die-with-parent", "--as-pid-1", "--cap-drop", "ALL"),
+            *("--seccomp", str(descriptor)),
+            *_mounts(_visible(readable), [one.resolve() for one in hidden], scratch.resolve()),
+        ]
+        return subprocess.Popen([*bubblewrap, *command], pass_fds=[descriptor], **popen)
+
+
+def _mounts(visible: Iterable[Path], hidden: Iterable[Path], scratch: Path) -> list[str]:
+    """Options of bubblewrap that lay out the root; later ones cover earlier ones."""
+    read_only = [option for one in visible for option in ("--ro-bind", str(one), str(one))]
+    covered = [
+        option for one in hidden for option in ("--tmpfs", str(one), "--remount-ro", str(one))
+    ]
+    devices = [
+        option
+        for one in Path("/dev").glob("nvidia*")
+        for option in ("--dev-bind", str(one), str(one))
+    ]
+    return [
+        *("--proc", "/proc", "--dev", "/dev", *devices, "--remount-ro", "/dev"),
+        *read_only,
+        *covered,
+        *("--size", str(SCRATCH_BYTES), "--tmpfs", str(scratch), "--chdir", str(scratch)),
+        *("--remount-ro", "/"),
+    ]
+
+
+def _visible(readable: Iterable[Path]) -> list[Path]:
+    """What the process sees: the system, Python, what it imports from, and what it is given.
+
+    Outer folders come first, as they would cover inner ones.
+    """
+    imported_from = map(Path, sys.path[1:])  # the first is the folder of this program alone
+    wanted = [*map(Path, SYSTEM), Path(sys.prefix), Path(sys.base_prefix), *imported_from]
+    for folder in readable:
+        wanted += [folder, *_blobs(folder)]
+    places = {place for one in wanted for place in (one.absolute(), one.resolve())}
+    return sorted(place for place in places if place.exists())
+
+
+def _blobs(folder: Path) -> list[Path]:
+    """Where the files of a checkpoint are if it lies in the hub's cache, whose snapshots are links.
+
+    Other links are not followed: they may lead to files that are none of the policy's business.
+    """
+    repository = folder.resolve().parent.parent
+    blobs = repository / "blobs"
+    in_cache = folder.resolve().parent.name == "snapshots" and not blobs.is_symlink()
+    return [blobs] if in_cache else []
 
 
 def scrubbed_environment(scratch: Path, plugins: Path | None = None) -> dict[str, str]:

@@ -24,6 +24,7 @@ from kitchen_prefs.metrics import (
 )
 from kitchen_prefs.splits import DATA_VERSION, TEST_SPLITS, get_split
 from kitchen_prefs.utils.files import atomic_file
+from kitchen_prefs_leaderboard.judgement import rerun_score
 from kitchen_prefs_leaderboard.page.page_data import (
     episode_data,
     layout_data,
@@ -32,7 +33,6 @@ from kitchen_prefs_leaderboard.page.page_data import (
 )
 from kitchen_prefs_leaderboard.ranking import Row
 from kitchen_prefs_leaderboard.scoring import MEAN
-from kitchen_prefs_leaderboard.verification import rerun_score
 
 TEMPLATES = files("kitchen_prefs_leaderboard.page") / "templates"
 # Joined in this order into one script.

@@ -42,7 +42,7 @@ function badges(entry) {
 /** An entry's description, and the result of its re-run. */
 function about(entry) {
   const { submission, verification } = entry;
-  const { type, parameters, checkpoint } = submission.policy;
+  const { type, parameters, checkpoint, plugin } = submission.policy;
   const size = parameters === null ? "" : `, ${parameters.toLocaleString("en")} parameters`;
   const packages = Object.entries(submission.packages).map(([name, one]) => `${name} ${one}`);
   const facts = [
@@ -55,6 +55,9 @@ function about(entry) {
   ];
   if (submission.link !== null) facts.splice(1, 0, ["Link", linkTo(submission.link)]);
   if (checkpoint !== null) facts.push(["Checkpoint", checkpoint]);
+  if (plugin !== null) {
+    facts.push(["Plug-in", `${plugin.distribution} ${plugin.version}, code ${plugin.code}`]);
+  }
   if (verification !== null) facts.push(["Re-run", rerunText(verification)]);
   return html(
     "dl",
