@@ -6,6 +6,7 @@ import shutil
 import pytest
 from filelock import FileLock
 from hub_server import running_hub
+from short_splits import short_splits
 
 os.environ.setdefault("OMP_NUM_THREADS", "1")  # for torch
 
@@ -33,6 +34,13 @@ def made_once(tmp_path_factory, worker_id):
         return folder
 
     return make
+
+
+@pytest.fixture
+def few_sessions():
+    """Cuts the splits of evaluations down to six sessions."""
+    with short_splits():
+        yield
 
 
 @pytest.fixture

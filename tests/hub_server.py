@@ -10,8 +10,6 @@ import hashlib
 import json
 import os
 import re
-import subprocess
-import sys
 import threading
 import time
 from contextlib import contextmanager
@@ -20,6 +18,7 @@ from functools import partial
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from urllib.parse import parse_qs, unquote, urlsplit
 
+import warm_python
 import yaml
 
 TOKENS = {"hf_of_ada": "ada", "hf_of_bob": "bob"}
@@ -368,13 +367,7 @@ def run(hub, *arguments, **environment):
         "HF_HUB_DISABLE_PROGRESS_BARS": "1",
         "NO_PROXY": "127.0.0.1",
     }
-    return subprocess.run(
-        [sys.executable, *arguments],
-        env=usual | ours | environment,
-        check=False,
-        capture_output=True,
-        text=True,
-    )
+    return warm_python.run(*arguments, env=usual | ours | environment)
 
 
 def kitchen_prefs(hub, *arguments, **environment):

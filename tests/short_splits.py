@@ -1,4 +1,4 @@
-"""Cuts the test splits down to six sessions, so that whole submissions take seconds.
+"""Cuts the splits of evaluations down to six sessions, so that whole submissions take seconds.
 
 `short_splits_of_programs/sitecustomize.py`, on the PYTHONPATH of a program that a test starts, does
 the same there: no command has an option for it, as scores of a shorter split would not compare.
@@ -6,19 +6,22 @@ the same there: no command has an option for it, as scores of a shorter split wo
 
 from contextlib import contextmanager
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 
 from kitchen_prefs.splits import SPLITS, TEST_SPLITS
 
 SESSIONS = 6
+OF_PROGRAMS = Path(__file__).parent / "short_splits_of_programs"
 
 
 @contextmanager
 def short_splits():
-    """Cut the test splits down for as long as it lasts."""
+    """Cut the splits down for as long as it lasts, for the programs that are started, too."""
     with pytest.MonkeyPatch.context() as patch:
-        for name in TEST_SPLITS:
+        patch.setenv("PYTHONPATH", str(OF_PROGRAMS))
+        for name in ("val", *TEST_SPLITS):
             split = SPLITS[name]
             patch.setitem(SPLITS, name, replace(split, users=split.users[:SESSIONS]))
         yield

@@ -25,7 +25,7 @@ BENCHMARK = {
     "physics": "preferences simulation splits utils",
     "rendering": "physics preferences simulation utils",
     "envs": "instances metrics preferences rendering simulation splits utils",
-    "datasets": "envs instances metrics preferences simulation splits utils",
+    "datasets": "envs instances metrics preferences rendering simulation splits utils",
     "evaluation": "envs metrics simulation splits utils",
     "cli": "datasets evaluation physics",
     "__init__": "datasets",

@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 import torch
 from safetensors.torch import load_file
+from short_splits import OF_PROGRAMS
 
 from kitchen_prefs.datasets import make_dataset
 from kitchen_prefs.evaluation.episode_files import read_episodes
@@ -18,7 +19,6 @@ pytestmark = [pytest.mark.xdist_group("examples"), pytest.mark.lerobot, pytest.m
 
 ROOT = Path(__file__).parents[1]
 EXAMPLE = ROOT / "examples" / "lerobot_policy_deepsets"
-SHORT_SPLITS = ROOT / "tests" / "short_splits_of_programs"
 DATASET = "dishwasher-train-p2-d3-v1"  # two preferences, three demonstrations each
 
 
@@ -55,7 +55,7 @@ def run(python, home):
             "HF_DATASETS_CACHE": str(home / "cache"),
             "HF_HUB_OFFLINE": "1",
             "OMP_NUM_THREADS": "1",
-            "PYTHONPATH": str(SHORT_SPLITS),
+            "PYTHONPATH": str(OF_PROGRAMS),
         }
         command = [python, "-m", module, *arguments]
         done = subprocess.run(

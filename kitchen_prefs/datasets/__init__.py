@@ -1,10 +1,11 @@
-"""Data sets by name: make, load, verify, push, and draw prompts from.
+"""Data sets by name: make, load, verify, draw, push, and draw prompts from.
 
 names         the grammar of the names, and where a data set lies
 columns       what a frame holds, and the content fingerprint
 writing       LeRobot's files, written on all cores
 manifest      what a data set says about itself
 loading       make on demand, and load
+drawing       a copy with a drawing of each decision
 verification  everything a data set must satisfy
 cards         a card for each data set
 hub_upload    to the Hugging Face hub

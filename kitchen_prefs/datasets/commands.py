@@ -1,4 +1,4 @@
-"""`kitchen-prefs datasets`: list, show, make, verify, push; for developers, record and cards."""
+"""`kitchen-prefs datasets`: list, show, make, verify, draw, push; for developers, record, cards."""
 
 from pathlib import Path
 from typing import Annotated
@@ -76,6 +76,27 @@ def verify(names: Names) -> None:
 
 
 @app.command()
+def draw(
+    name: Name,
+    episodes: Annotated[
+        str | None,
+        typer.Option(help="Which episodes, such as 0,3,7.", show_default="all"),
+    ] = None,
+) -> None:
+    """Copy a data set with a drawing of each decision, to look at with lerobot-dataset-viz.
+
+    The copy is kitchen_prefs/NAME-drawn.
+
+    Example: kitchen-prefs datasets draw dishwasher-val-v1 --episodes=0,3,7
+    """
+    numbers = None if episodes is None else _numbers(episodes)
+    from kitchen_prefs.datasets.drawing import draw_dataset  # imports LeRobot: seconds
+
+    folder = draw_dataset(name, numbers)
+    typer.echo(f"{folder.parent.name}/{folder.name} is in {folder}")
+
+
+@app.command()
 def push(
     name: Name,
     repo_id: Annotated[str, typer.Option(help="Its name on the Hugging Face hub, OWNER/NAME.")],
@@ -118,3 +139,10 @@ def write_cards(
     from kitchen_prefs.datasets import publishing  # imports LeRobot: seconds
 
     publishing.write_cards(cards)
+
+
+def _numbers(text: str) -> list[int]:
+    try:
+        return [int(number) for number in text.split(",")]
+    except ValueError as error:
+        raise ValueError(f"--episodes is a list of numbers such as 0,3,7, not {text!r}.") from error

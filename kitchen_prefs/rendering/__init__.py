@@ -1,4 +1,4 @@
-"""Pictures of the kitchen, drawn by MuJoCo's renderer.
+"""Pictures of the kitchen: by MuJoCo's renderer, and a plan that needs no MuJoCo.
 
 state          what a picture shows, in plain numbers
 meshes         surfaces as triangles
@@ -10,4 +10,9 @@ dishwasher     its body, door and racks
 kitchen_model  all of it as one MuJoCo model
 opengl         a context that draws without a display
 renderer       a picture of a state
+
+plan           the kitchen from above before a decision, and what the decision chooses
+plan_ground    what a plan has besides dishes
+dish_outlines  dishes from above, in any position
+canvas         shapes with smooth edges, by pillow
 """

@@ -57,12 +57,12 @@ def _last_value(arguments: list[str], option: str) -> str | None:
 
 @group.command("list")
 def list_checkpoints() -> None:
-    """List the checkpoints; the hub has those that are not installed.
+    """List the checkpoints.
 
     Example: kitchen-prefs checkpoints list
     """
     for name in checkpoints.read_manifest():
-        typer.echo(f"{name:14} {'installed' if checkpoints.is_installed(name) else 'on the hub'}")
+        typer.echo(name)
 
 
 @group.command()
@@ -71,16 +71,13 @@ def get(
     out: Annotated[
         Path | None, typer.Option(help="A folder to copy it to; without it nothing is copied.")
     ] = None,
-    repo_id: Annotated[
-        str | None, typer.Option(help="A model repository of the hub to take it from.")
-    ] = None,
 ) -> None:
-    """Verify a checkpoint, download it if it is not installed, and print its folder.
+    """Verify a checkpoint by its hash, and print its folder.
 
     Example: kitchen-prefs evaluate --policy.path=$(kitchen-prefs checkpoints get ttp_quick)
     --split=seen --out=outputs/evaluation
     """
-    folder = checkpoints.find_checkpoint(name, repo_id)
+    folder = checkpoints.find_checkpoint(name)
     if out is not None:
         if out.exists():
             raise ValueError(f"{out} exists; give another --out.")

@@ -6,7 +6,7 @@ from dataclasses import replace
 from shutil import copytree
 
 import pytest
-from short_splits import SESSIONS, short_splits
+from short_splits import SESSIONS
 
 from kitchen_prefs import instances
 from kitchen_prefs.cli import main
@@ -61,13 +61,6 @@ def expert_submission(made_once):
 def submission(expert_submission, tmp_path):
     """A copy of the honest submission, to be tampered with."""
     return copytree(expert_submission, tmp_path / "submission")
-
-
-@pytest.fixture
-def few_sessions():
-    """Cuts the test splits down to six sessions."""
-    with short_splits():
-        yield
 
 
 @pytest.fixture(scope="session")

@@ -1,18 +1,16 @@
 """Submissions from what lerobot-eval records."""
 
 import os
-import subprocess
-import sys
-from pathlib import Path
 from shutil import copytree, rmtree
 
 import pytest
+import warm_python
+from short_splits import short_splits
 
 from kitchen_prefs.splits import TEST_SPLITS
 from kitchen_prefs_leaderboard.recording_reading import read_recordings
 from kitchen_prefs_leaderboard.scoring import score_submissions
 
-SHORT_SPLITS = Path(__file__).parents[1] / "short_splits_of_programs"
 SYMBOLIC = ("--policy.type=rules", "--policy.rule=symbolic")
 # One process for all splits, because LeRobot takes seconds to start.
 RECORD_ALL = f"""
@@ -39,23 +37,15 @@ pytestmark = [pytest.mark.lerobot, pytest.mark.slow, pytest.mark.usefixtures("fe
 @pytest.fixture(scope="session")
 def recordings(made_once):
     def fill(folder):
-        done = subprocess.run(
-            [sys.executable, "-c", RECORD_ALL],
-            cwd=folder,
-            env=os.environ | {"PYTHONPATH": str(SHORT_SPLITS), "HF_HUB_OFFLINE": "1"},
-            check=False,
-            capture_output=True,
-            text=True,
-        )
+        with short_splits():
+            environment = os.environ | {"HF_HUB_OFFLINE": "1"}
+            done = warm_python.run("-c", RECORD_ALL, cwd=folder, env=environment)
         assert done.returncode == 0, done.stderr[-3000:]
 
     return made_once("recordings", fill)
 
 
-def test_recordings_are_the_submission_that_rolling_out_makes(
-    recordings, tmp_path, kitchen_prefs, monkeypatch
-):
-    monkeypatch.setenv("PYTHONPATH", str(SHORT_SPLITS))
+def test_recordings_are_the_submission_that_rolling_out_makes(recordings, tmp_path, kitchen_prefs):
     submit = ("leaderboard", "submit", "--name=Symbolic", "--track=standard", *SYMBOLIC)
     recorded, rolled_out = tmp_path / "recorded", tmp_path / "rolled_out"
     assert not kitchen_prefs(*submit, f"--out={recorded}", f"--from={recordings}")

@@ -92,6 +92,7 @@ def test_the_terminal_keeps_the_tens_of_an_interval():
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("few_sessions")
 def test_a_submission_of_plain_python_is_scored(tmp_path):
     folder = tmp_path / "by_hand"
     subprocess.run([sys.executable, BY_HAND, folder], check=True)

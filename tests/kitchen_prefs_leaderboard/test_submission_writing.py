@@ -2,13 +2,11 @@
 
 import bz2
 import json
-import os
-import subprocess
-import sys
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
+import warm_python
 from short_splits import short_splits
 
 from kitchen_prefs.cli import command_line
@@ -22,7 +20,6 @@ from kitchen_prefs_leaderboard.submission_format import ACTIONS, installed_packa
 from kitchen_prefs_leaderboard.submission_writing import policy_of, training_of
 from kitchen_prefs_leaderboard.verification import read_verifications
 
-SHORT_SPLITS = Path(__file__).parents[1] / "short_splits_of_programs"
 CHECKPOINT = Path(__file__).parents[2] / "policies" / "checkpoints" / "ttp_quick"
 SYMBOLIC = ("--policy.type=rules", "--policy.rule=symbolic")
 SUBMIT = (
@@ -39,13 +36,8 @@ def submitted(made_once):
 
     def fill(folder):
         out = f"--out={folder / 'symbolic'}"
-        done = subprocess.run(
-            [sys.executable, "-m", "kitchen_prefs.cli", *SUBMIT, out, "--jobs=2"],
-            check=False,
-            env={**os.environ, "PYTHONPATH": str(SHORT_SPLITS)},
-            capture_output=True,
-            text=True,
-        )
+        with short_splits():
+            done = warm_python.run("-m", "kitchen_prefs.cli", *SUBMIT, out, "--jobs=2")
         assert done.returncode == 0, done.stderr
         assert "Rolling out, many_preferences: 100%" in done.stderr
 

@@ -3,12 +3,11 @@
 import json
 import os
 import re
-import subprocess
-import sys
 
 import numpy as np
 import pytest
 import torch
+import warm_python
 import yaml
 from safetensors.torch import load_file
 
@@ -55,10 +54,7 @@ def run(home, module, *arguments):
         "HF_HUB_OFFLINE": "1",
         "OMP_NUM_THREADS": "1",
     }
-    command = [sys.executable, "-m", module, *map(str, arguments)]
-    done = subprocess.run(
-        command, env=environment, cwd=home, capture_output=True, text=True, check=False
-    )
+    done = warm_python.run("-m", module, *arguments, env=environment, cwd=home)
     assert done.returncode == 0, done.stderr[-3000:]
     return done.stderr + done.stdout
 

@@ -1,4 +1,4 @@
-"""On PYTHONPATH, lets a program and all programs that it starts know few sessions a test split."""
+"""On PYTHONPATH, lets a program and all programs that it starts know few sessions a split."""
 
 import os
 from dataclasses import replace
@@ -8,5 +8,8 @@ from kitchen_prefs.splits import SPLITS, TEST_SPLITS
 SESSIONS = int(os.environ.get("SESSIONS_OF_SHORT_SPLITS", "6"))
 
 SPLITS.update(
-    {name: replace(SPLITS[name], users=SPLITS[name].users[:SESSIONS]) for name in TEST_SPLITS}
+    {
+        name: replace(SPLITS[name], users=SPLITS[name].users[:SESSIONS])
+        for name in ("val", *TEST_SPLITS)
+    }
 )

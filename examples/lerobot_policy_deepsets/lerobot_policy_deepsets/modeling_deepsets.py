@@ -16,7 +16,7 @@ from lerobot_policy_kitchen_prefs.common.score_correction import correct_scores
 from .configuration_deepsets import DeepSetsConfig
 
 COLUMNS, EXTENTS = instances.COLUMNS, instances.EXTENTS
-SCALE = torch.tensor([10.0] * 3 + [3.0] * 3 + [1.0] * 4 + [0.05] + [1.0] * 2)  # to about 1
+SCALE = [10.0] * 3 + [3.0] * 3 + [1.0] * 4 + [0.05] + [1.0] * 2  # brings the columns to about 1
 SAME_SIZE = 0.02  # m; the extents of two categories differ by more
 
 
@@ -54,7 +54,7 @@ class DeepSetsPolicy(PreTrainedPolicy):
         """The poses of the best rows, (B, 7)."""
         sets, scores = self._score(batch)  # (B, N, 13), (B, N)
         best = (scores - 1e4 * self._failed.find(sets)).argmax(dim=1)  # (B,)
-        chosen = sets[torch.arange(len(sets)), best]  # (B, 13)
+        chosen = sets[torch.arange(len(sets), device=sets.device), best]  # (B, 13)
         self._failed.record(chosen)
         return chosen[:, instances.POSE]
 
@@ -65,7 +65,7 @@ class DeepSetsPolicy(PreTrainedPolicy):
     def _score(self, batch: dict[str, Tensor]) -> tuple[Tensor, Tensor]:
         """Score picks by the prompt, places by what stands beside: (B, N, 13), (B, N)."""
         sets = batch["observation.instances"].reshape(len(batch["observation.prompt"]), -1, COLUMNS)
-        places = self.of_place(sets * SCALE)[..., 0]  # (B, N)
+        places = self.of_place(sets * sets.new_tensor(SCALE))[..., 0]  # (B, N)
         places = correct_scores(places, sets, self.collisions(sets), None)  # (B, N)
         is_place = instances.is_place_decision(sets)[:, None]  # (B, 1)
         scores = places.where(is_place, self._score_picks(sets, batch["observation.prompt"]))
@@ -74,12 +74,12 @@ class DeepSetsPolicy(PreTrainedPolicy):
     def _score_picks(self, sets: Tensor, prompts: Tensor) -> Tensor:
         """Score objects, (B, N); the prompt is pooled as a whole, and over rows of their size."""
         shown, mask = select_rows(prompts, prompts[..., instances.CHOSEN] > 0)  # (B, L, 14), (B, L)
-        features = self.of_prompt(shown[..., :COLUMNS] * SCALE)  # (B, L, d)
+        features = self.of_prompt(shown[..., :COLUMNS] * sets.new_tensor(SCALE))  # (B, L, d)
         apart = torch.cdist(sets[..., EXTENTS], shown[..., EXTENTS]) / SAME_SIZE  # (B, N, L)
         alike = (-apart.square()).exp() * mask[:, None]  # (B, N, L)
         of_size = alike @ features / (alike.sum(dim=-1, keepdim=True) + 0.1)  # (B, N, d)
         of_all = _mean(features, mask)[:, None].expand_as(of_size)  # (B, N, d)
-        timeless = (sets * SCALE).index_fill(-1, torch.tensor(instances.DECISION), 0)  # (B, N, 13)
+        timeless = sets * sets.new_tensor([*SCALE[:10], 0.0, *SCALE[11:]])  # (B, N, 13)
         rows = self.of_row(torch.cat([timeless, of_size, of_all], dim=-1)).relu()  # (B, N, d)
         real = instances.is_real(sets)  # (B, N)
         pooled = [_mean(rows, real), (rows * real[..., None]).amax(dim=1)]  # (B, d) each

@@ -199,3 +199,14 @@ def act(decisions: int) -> Training:
     """LeRobot's ACT, which chooses several decisions at a time."""
     overrides = (f"--policy.chunk_size={decisions}", f"--policy.n_action_steps={decisions}")
     return Training(f"act-{decisions}", batch_size=64, overrides=overrides, recipe="act")
+
+
+def seeded(recipe: str, seed: int) -> Training:
+    """A recipe as it stands, with another seed than LeRobot's 1000."""
+    return Training(f"{recipe}-seed-{seed}", overrides=(f"--seed={seed}",), recipe=recipe)
+
+
+def seeds(recipe: str) -> dict[str, Policy]:
+    """Three trainings of a recipe: the committed one, and two more."""
+    further = {str(seed): seeded(recipe, seed) for seed in (1, 2)}
+    return {"1000, committed": Committed(recipe), **further}

@@ -23,6 +23,7 @@ from kitchen_prefs_experiments.paper.evaluated_policies import (
     hidden,
     history,
     preferences,
+    seeds,
 )
 from kitchen_prefs_experiments.paper.table_types import Curves, Table
 
@@ -315,6 +316,25 @@ TABLES: dict[str, Table | Curves] = {  # in the order of the pages
             "decisions of preference 1 and measured on the picks, in the expert's states of that "
             "preference's sessions. Category accuracy counts the places, too."
         ),
+    ),
+    "seeds": Table(
+        title="Training seeds",
+        paper="Each policy was trained once, as far as the paper says.",
+        axis="seed of the training",
+        rows=seeds("ttp_quick"),
+        splits=("seen", "unseen_preferences"),
+        metrics=("Score", "PE", "ED_c"),
+        spread=True,
+    ),
+    "gnn_seeds": Table(
+        title="Training seeds of the graph network",
+        paper="Each policy was trained once, as far as the paper says.",
+        axis="seed of the training",
+        rows=seeds("gnn_tuned"),
+        splits=("seen", "unseen_counts"),
+        metrics=("Score", "PE", "ED_c"),
+        spread=True,
+        note="Both splits have preferences whose labels the network was trained on.",
     ),
     "learning": Curves(
         title="Learning curves",

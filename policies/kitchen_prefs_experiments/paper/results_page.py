@@ -7,6 +7,7 @@ numbers are equal become one sentence.
 
 from collections.abc import Iterator, Mapping
 from pathlib import Path
+from statistics import stdev
 
 from kitchen_prefs.splits import TEST_SPLITS
 from kitchen_prefs_experiments.markdown import interval_cell, markdown_table
@@ -130,6 +131,9 @@ def _of_metric(table: Table, rows: dict[str, PolicyRow], metric: str) -> Iterato
     }
     constant = {row: cells[0] for row, cells in lines.items() if len({*cells}) == 1 < len(cells)}
     body = [[row, *cells] for row, cells in lines.items() if row not in constant]
+    if table.spread:
+        means = [[of[group].metrics[metric].mean for of in groups_of.values()] for group in groups]
+        body.append(["SD of the seeds", *(f"{stdev(of_group):.3f}" for of_group in means)])
     if metric == table.metrics[0]:
         for label, values in table.paper_values.items():
             body.append([label, *(_number(values.get(group)) for group in groups)])

@@ -28,6 +28,7 @@ class Table:
             label -> row -> value.
         prompt_use: The splits that are also rolled out with another preference's prompt.
         by_count: Whether there is a group for each number of dishes per rack.
+        spread: Whether its rows differ in the seed alone, so that their SD is shown.
         note: Differences from the paper.
     """
 
@@ -40,6 +41,7 @@ class Table:
     paper_values: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     prompt_use: tuple[str, ...] = ()
     by_count: bool = False
+    spread: bool = False
     note: str = ""
 
     @property

@@ -2,15 +2,13 @@
 
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any, Self
 
 import numpy as np
 import torch
-from lerobot.configs import PipelineFeatureType, PolicyFeature, PreTrainedConfig
 from lerobot.lerobot_types import EnvTransition, TransitionKey
-from lerobot.processor import ProcessorStep, ProcessorStepRegistry
+from lerobot.processor import ProcessorStepRegistry
 
-from kitchen_prefs.datasets.prompt_step import location_of_dataset, read_demonstrations
+from kitchen_prefs.datasets.dataset_step import DatasetStep, Features, read_demonstrations
 from kitchen_prefs.envs.lerobot_env import OBS_INSTANCES, OBS_PROMPT
 from kitchen_prefs.instances import COLUMNS, POSE, is_real
 
@@ -20,8 +18,6 @@ from .rack_poses import RackPoses
 from .relabelling import relabel
 
 STREAM = 1  # of randomness, independent of the one that `PromptStep` draws from
-
-Features = dict[PipelineFeatureType, dict[str, PolicyFeature]]
 
 
 @lru_cache(maxsize=2)
@@ -34,34 +30,15 @@ def read_categories(repo_id: str, root: str | None) -> tuple[Categories, RackPos
 
 @ProcessorStepRegistry.register("kitchen_prefs_relabelling")
 @dataclass
-class RelabellingStep(ProcessorStep):
+class RelabellingStep(DatasetStep):
     """Permutes the categories of each sample, in its prompt, its set and its action together.
 
     It follows `PromptStep`. Observations of an environment, which have no frame index, pass
     unchanged.
 
     Attributes:
-        repo_id: The data set that the policy is trained on.
-        root: Its folder, where that is not LeRobot's default.
         seed: Another seed permutes the same batches otherwise.
     """
-
-    repo_id: str | None = None
-    root: str | None = None
-    seed: int = 0
-
-    @classmethod
-    def from_config(cls, config: PreTrainedConfig, seed: int = 0) -> Self:
-        """Make the step in a policy's `make_TYPE_pre_post_processors`.
-
-        Args:
-            config: The policy's configuration.
-            seed: The seed of the permutations.
-
-        Returns:
-            The step, for the data set that the policy is about to be trained on.
-        """
-        return cls(**location_of_dataset(config), seed=seed)
 
     def __call__(self, transition: EnvTransition) -> EnvTransition:
         """Relabel a batch of B frames.
@@ -94,10 +71,6 @@ class RelabellingStep(ProcessorStep):
             TransitionKey.OBSERVATION: {**observation, **relabelled},
             TransitionKey.ACTION: sets[samples, targets][:, POSE],
         }
-
-    def get_config(self) -> dict[str, Any]:
-        """What a checkpoint stores of the step."""
-        return {"repo_id": self.repo_id, "root": self.root, "seed": self.seed}
 
     def transform_features(self, features: Features) -> Features:
         """The features of a batch, which stay."""

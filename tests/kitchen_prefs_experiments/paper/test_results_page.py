@@ -70,3 +70,12 @@ def test_rows_in_which_all_figures_are_equal_become_a_sentence(tmp_path, made_up
     assert "| random | 0.10 [0.00, 1.00] | 0.40 [0.30, 0.50] |" in section
     assert "| symbolic |" not in section
     assert "; symbolic 0.80 [0.70, 0.90]; " in section
+
+
+def test_trainings_that_differ_in_the_seed_have_a_spread(tmp_path, made_up_results):
+    results = made_up_results("seeds")
+    metrics = results.rows["1"].groups["seen"].metrics
+    metrics["Score"] = Interval(0.1, 0.0, 0.2)
+    write_results(results, tmp_path)
+    text = pages(tmp_path)["seeds"]
+    assert "| SD of the seeds | 0.173 | 0.000 |" in text  # of .4, .1 and .4

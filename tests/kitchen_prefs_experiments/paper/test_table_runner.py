@@ -43,6 +43,7 @@ def test_tables_that_share_a_policy_evaluate_it_one_after_the_other(tmp_path, mo
 
 @pytest.mark.lerobot
 @pytest.mark.slow
+@pytest.mark.usefixtures("few_sessions")
 def test_a_network_is_fine_tuned_on_one_demonstration(home, monkeypatch):
     monkeypatch.setattr(FineTuning, "trainings", property(_first_one(FineTuning.trainings.fget)))
     tiny = Training("tiny", "dishwasher-train-p2-d3-v1", 4, SMALL)
@@ -74,6 +75,7 @@ def _first_one(trainings):
 
 @pytest.mark.lerobot
 @pytest.mark.slow
+@pytest.mark.usefixtures("few_sessions")
 def test_a_history_is_trained_and_measured_on_its_preference(home):
     tiny = Training(
         "tiny-history",
