@@ -115,5 +115,7 @@ def test_it_is_selected_evaluated_and_submitted(run, trained, home):
     assert len(read_episodes(home / "evaluation" / "seen.jsonl")) == 6
     named = ("--name=Deep sets", "--track=standard", "--out=submission")
     run("kitchen_prefs.cli", "leaderboard", "submit", policy, *named)
+    plugin = json.loads((home / "submission/submission.json").read_text())["policy"]["plugin"]
+    assert (plugin["distribution"], plugin["version"]) == ("lerobot_policy_deepsets", "0.1.0")
     score = run("kitchen_prefs.cli", "leaderboard", "score", "submission", "--format=json")
     assert "Deep sets" in score
