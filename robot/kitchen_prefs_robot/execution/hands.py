@@ -17,7 +17,9 @@ from kitchen_prefs_robot.scene import World
 from kitchen_prefs_robot.scene.layout import DRAWER_FLOOR, DRAWER_TRAVEL, from_cabinet
 from kitchen_prefs_robot.scene.tableware import real_extents
 
-ASTRAY = 0.05  # m to the side of a dish, where a pick that is led astray takes its points to be
+# m to the side of a dish, where a pick that is led astray takes its points to be: half of that, and
+# it would grasp a bowl by its other wall.
+ASTRAY = 0.09
 DROP_HEIGHT = 0.01  # m over the drawer's floor, from which the invisible hand drops
 
 

@@ -30,10 +30,12 @@ def read_outcomes(folder: Path, variation: str, fingerprint: str) -> dict[Trial,
 def write_outcome(
     folder: Path, variation: str, fingerprint: str, trial: Trial, outcome: EpisodeOutcome
 ) -> None:
-    """Add an outcome."""
+    """Add an outcome, on a line of its own even after one that was cut off."""
     line = {"policy": fingerprint, "trial": asdict(trial), "outcome": asdict(outcome)}
-    with _file(folder, variation).open("a") as file:
-        file.write(f"{json.dumps(line)}\n")
+    file = _file(folder, variation)
+    cut_off = file.exists() and not file.read_text().endswith("\n")
+    with file.open("a") as lines:
+        lines.write("\n" * cut_off + f"{json.dumps(line)}\n")
 
 
 def _file(folder: Path, variation: str) -> Path:

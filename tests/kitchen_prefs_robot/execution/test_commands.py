@@ -1,0 +1,66 @@
+"""`kitchen-prefs robot run` and `robot table`, with a committed policy."""
+
+import json
+
+import pytest
+from typer.testing import CliRunner
+
+pytest.importorskip("gym_hil", reason="needs the extra robot")
+
+from kitchen_prefs.cli import command_line
+from kitchen_prefs_experiments.checkpoints import find_checkpoint
+
+GIVEN = "--variation=perfect perception and grasps"
+
+
+def run(*arguments):
+    policy = f"--policy.path={find_checkpoint('ttp_drawers')}"
+    return CliRunner().invoke(command_line(), ["robot", arguments[0], policy, *arguments[1:]])
+
+
+@pytest.mark.slow
+def test_a_run_leaves_a_log_of_every_decision(tmp_path):
+    out = tmp_path / "out"
+    done = run("run", "--scene=3", "--preference=2", GIVEN, f"--out={out}")
+    assert done.exit_code == 0, done.exception
+    assert "4 of 4 dishes right after 12 decisions, 0 failed picks" in done.stdout
+    lines = [json.loads(line) for line in (out / "decisions.jsonl").read_text().splitlines()]
+    assert [line["decision"] for line in lines] == list(range(12))
+    assert lines[0]["chosen"] == "open the upper drawer"
+    assert lines[1]["chosen"].startswith("pick the ")
+    assert all(line["result"] == "done" and not line["refusal"] for line in lines)
+    assert json.loads((out / "outcome.json").read_text())["right"] == 1.0
+
+
+@pytest.mark.slow
+def test_a_table_resumes_and_refuses_another_policys_outcomes(tmp_path):
+    options = ("--scenes=1", "--preferences=2", GIVEN, f"--out={tmp_path}")
+    assert run("table", *options).exit_code == 0
+    (file,) = tmp_path.glob("*.jsonl")
+    lines = file.read_text().splitlines()
+    assert len(lines) == 2
+    file.write_text(lines[0] + "\n" + lines[1][:40])  # killed while it wrote
+    assert run("table", *options).exit_code == 0
+    again = json.loads(file.read_text().splitlines()[-1])
+    assert again == json.loads(lines[1])
+    file.write_text(lines[0].replace('"policy": "', '"policy": "x') + "\n")
+    said = str(run("table", *options).exception)
+    assert said == f"{file} has outcomes of another policy; give another --out."
+
+
+@pytest.mark.parametrize(
+    ("arguments", "sentence"),
+    [
+        (("run", "--scene=3", "--variation=nothing"), "There is no variation 'nothing'."),
+        (
+            ("run", "--scene=3", "--demonstration=nowhere"),
+            "There is no data set of demonstrations in nowhere; give its folder.",
+        ),
+        (("table", "--variation=all reel"), "Did you mean 'all real'?"),
+    ],
+)
+def test_a_mistake_is_one_sentence(arguments, sentence, tmp_path):
+    said = str(run(*arguments, f"--out={tmp_path / 'out'}").exception)
+    assert sentence in said
+    assert "\n" not in said
+    assert not (tmp_path / "out" / "decisions.jsonl").exists()
