@@ -11,6 +11,7 @@ from kitchen_prefs_experiments.paper.table_types import Curves, Table
 
 PACKING_EFFICIENCY = "packing efficiency PE (share of the expert's)"
 AXES = {
+    "Score": "Score (mean of PE and ED_c)",
     "PE": PACKING_EFFICIENCY,
     "PE, other prompt": PACKING_EFFICIENCY,
     "ED_c": "edit similarity to the expert's decisions ED_c",

@@ -8,7 +8,9 @@ from kitchen_prefs_experiments.paper.figures import COLOURS, draw
 from kitchen_prefs_experiments.paper.paper_tables import TABLES
 
 
-@pytest.mark.parametrize(("name", "ours"), [("main", 7), ("attributes", 1), ("finetuning", 2)])
+@pytest.mark.parametrize(
+    ("name", "ours"), [("main", 7), ("attributes", 1), ("finetuning", 2), ("seeds", 3)]
+)
 def test_a_picture_shows_our_means_and_the_papers_values(tmp_path, made_up_results, name, ours):
     table = TABLES[name]
     draw(table, made_up_results(name), tmp_path / "table.png")
