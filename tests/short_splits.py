@@ -17,11 +17,12 @@ OF_PROGRAMS = Path(__file__).parent / "short_splits_of_programs"
 
 
 @contextmanager
-def short_splits():
+def short_splits(sessions=SESSIONS):
     """Cut the splits down for as long as it lasts, for the programs that are started, too."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("PYTHONPATH", str(OF_PROGRAMS))
+        patch.setenv("SESSIONS_OF_SHORT_SPLITS", str(sessions))
         for name in ("val", *TEST_SPLITS):
             split = SPLITS[name]
-            patch.setitem(SPLITS, name, replace(split, users=split.users[:SESSIONS]))
+            patch.setitem(SPLITS, name, replace(split, users=split.users[:sessions]))
         yield

@@ -4,6 +4,7 @@ import time
 from concurrent.futures import ThreadPoolExecutor
 
 import pytest
+from short_splits import short_splits
 
 from kitchen_prefs_experiments import lerobot_train
 from kitchen_prefs_experiments.paper import table_runner
@@ -43,8 +44,7 @@ def test_tables_that_share_a_policy_evaluate_it_one_after_the_other(tmp_path, mo
 
 @pytest.mark.lerobot
 @pytest.mark.slow
-@pytest.mark.usefixtures("few_sessions")
-def test_a_network_is_fine_tuned_on_one_demonstration(home, monkeypatch):
+def test_a_network_is_fine_tuned_on_one_demonstration(home, monkeypatch, two_preferences):
     monkeypatch.setattr(FineTuning, "trainings", property(_first_one(FineTuning.trainings.fget)))
     tiny = Training("tiny", "dishwasher-train-p2-d3-v1", 4, SMALL)
     table = Table(
@@ -57,7 +57,7 @@ def test_a_network_is_fine_tuned_on_one_demonstration(home, monkeypatch):
         prompt_use=("unseen_preferences",),
     )
     rows = run_table("tiny", table, 8, 2, home / "out").rows
-    assert rows["0"].groups["unseen_preferences"].episodes == 100
+    assert rows["0"].groups["unseen_preferences"].episodes == 22
     assert rows["2"].groups["unseen_preferences"].episodes == 20
     assert rows["2"].options[2] == "--steps=2"
     assert all(
@@ -67,6 +67,13 @@ def test_a_network_is_fine_tuned_on_one_demonstration(home, monkeypatch):
     monkeypatch.setattr(lerobot_train, "run_module", pytest.fail)
     monkeypatch.setattr(table_runner, "_evaluate", lambda *_: None)
     assert run_table("tiny", table, 8, 2, home / "out").rows == rows
+
+
+@pytest.fixture
+def two_preferences():
+    """Cuts the split of held-out preferences down to twenty sessions of one and two of another."""
+    with short_splits(22):
+        yield
 
 
 def _first_one(trainings):
@@ -92,5 +99,5 @@ def test_a_history_is_trained_and_measured_on_its_preference(home):
     rows = {"2": tiny}
     table = Table("Tiny", "", "k", rows, ("val",), ("Pick accuracy",))
     (row,) = run_table("tiny", table, 8, 1, home / "out").rows.values()
-    assert row.groups["val"].episodes == 10
+    assert row.groups["val"].episodes == 6
     assert 0 <= row.groups["val"].metrics["Pick accuracy"].mean <= 1
