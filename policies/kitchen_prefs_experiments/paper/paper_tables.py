@@ -320,7 +320,7 @@ TABLES: dict[str, Table | Curves] = {  # in the order of the pages
     "seeds": Table(
         title="Training seeds",
         paper="Each policy was trained once, as far as the paper says.",
-        axis="seed of the training",
+        axis="test split",
         rows=seeds("ttp_quick"),
         splits=("seen", "unseen_preferences"),
         metrics=("Score", "PE", "ED_c"),
@@ -329,7 +329,7 @@ TABLES: dict[str, Table | Curves] = {  # in the order of the pages
     "gnn_seeds": Table(
         title="Training seeds of the graph network",
         paper="Each policy was trained once, as far as the paper says.",
-        axis="seed of the training",
+        axis="test split",
         rows=seeds("gnn_tuned"),
         splits=("seen", "unseen_counts"),
         metrics=("Score", "PE", "ED_c"),

@@ -24,7 +24,7 @@ from kitchen_prefs_experiments.paper.table_types import Curves, Table
 OVERVIEW = "index"
 HOW_TO_READ = (
     "Cells are means over episodes with 95 % bootstrap intervals; behind the name of a split "
-    "stands its number of episodes. Each policy was trained once, so the intervals say nothing "
+    "stands its number of episodes. Each row is a single training, so the intervals say nothing "
     "about other seeds. [Metrics and protocol](../metrics_and_protocol.md) defines metrics, splits "
     "and rules."
 )
