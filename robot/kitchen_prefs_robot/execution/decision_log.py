@@ -11,6 +11,7 @@ import json
 from dataclasses import asdict
 from fractions import Fraction
 from pathlib import Path
+from textwrap import fill
 
 import av
 import numpy as np
@@ -32,7 +33,8 @@ SIZE = (480, 360)  # pixels of the video
 EVERY = 5  # commands of the arm, 50 a simulated second, from one frame of the video to the next
 FPS = 20  # twice as fast as it was
 STILL = 12  # frames that the last one stands
-BAR = 44  # pixels of the caption's bar
+BAR = 58  # pixels of the caption's bar: three lines
+CHARACTERS = 76  # of 11 pixels that fit beside one another
 INK, PAPER = (250, 248, 243), (38, 46, 51)
 
 
@@ -131,22 +133,13 @@ def write_video(frames: list[Image.Image], path: Path) -> None:
 
 
 def _captioned(picture: np.ndarray, caption: tuple[str, str]) -> Image.Image:
-    """A picture, (H, W, 3) uint8, above a bar with two lines."""
+    """A picture, (H, W, 3) uint8, above a bar: the preference in words, and the decision."""
     height, width, _ = picture.shape
     page = Image.new("RGB", (width, height + BAR), PAPER)
     page.paste(Image.fromarray(picture))
     draw = ImageDraw.Draw(page)
-    for line, text in enumerate(caption):
-        font = ImageFont.load_default(_size_that_fits(text, width - 16))
-        draw.text((8, height + 4 + 19 * line), text, INK, font)
+    preference, decision = caption
+    small, large = ImageFont.load_default(11), ImageFont.load_default(14)
+    draw.multiline_text((8, height + 4), fill(preference, CHARACTERS), INK, small, spacing=1)
+    draw.text((8, height + 36), decision, INK, large)
     return page
-
-
-def _size_that_fits(text: str, width: int) -> int:
-    """The largest font, of 8 to 14 pixels, in which a text is no wider."""
-    fitting = (size for size in range(14, 8, -1) if _width(text, size) <= width)
-    return next(fitting, 8)
-
-
-def _width(text: str, size: int) -> float:
-    return ImageFont.load_default(size).getlength(text)

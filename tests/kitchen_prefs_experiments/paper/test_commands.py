@@ -55,5 +55,5 @@ def test_a_tiny_table_is_run_once_and_reported(tmp_path, monkeypatch):
 
     assert run("results", f"--results={tmp_path / 'results'}").exit_code == 0
     text = (tmp_path / "results" / "tiny.md").read_text()
-    assert "The same in every column: symbolic 1.00 [1.00, 1.00]." in text
+    assert "symbolic 1.00 [1.00, 1.00]." in text
     assert "### Category accuracy\n\n|  | val (6) |" in text

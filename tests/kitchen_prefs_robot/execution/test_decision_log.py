@@ -3,10 +3,10 @@
 import av
 import numpy as np
 import pytest
-from PIL import Image
 
 pytest.importorskip("gym_hil", reason="needs the extra robot")
 
+from kitchen_prefs_robot.demonstrations.preferences import HUMAN_PREFERENCES
 from kitchen_prefs_robot.execution.decision_log import BAR, SIZE, _captioned, in_words, write_video
 from kitchen_prefs_robot.task.decisions import Pick, Place, Toggle
 from kitchen_prefs_robot.task.state import DrawersState, SeenDish
@@ -36,9 +36,13 @@ def test_a_video_shows_its_frames_above_the_caption(tmp_path):
     assert bar.max() > 180  # there is something to read
 
 
-@pytest.mark.parametrize("words", ["cups", "the upper drawer with " + "small plates, then " * 6])
-def test_a_caption_fits(words):
-    picture = _captioned(np.zeros((40, 300, 3), np.uint8), (words, words))
-    right_edge = np.asarray(picture.convert("L"))[40:, -4:]
-    assert isinstance(picture, Image.Image)
-    assert right_edge.max() < 60 or len(words) > 100
+@pytest.mark.parametrize("preference", HUMAN_PREFERENCES)
+def test_the_longest_caption_fits(preference):
+    words = (
+        preference.in_words,
+        "Decision 24 of at most 24: drop the small plate into the upper drawer",
+    )
+    bar = np.asarray(_captioned(np.zeros((8, SIZE[0], 3), np.uint8), words).convert("L"))[8:]
+    assert bar[:, :-6].max() > 180
+    assert bar[:, -6:].max() < 60
+    assert bar[-4:].max() < 60
