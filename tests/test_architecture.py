@@ -139,7 +139,7 @@ ROBOT = {
     ),
     "execution": (
         "demonstrations motion perception real_to_sim scene task kitchen_prefs.envs "
-        "kitchen_prefs.evaluation kitchen_prefs.instances kitchen_prefs.metrics "
+        "kitchen_prefs.evaluation kitchen_prefs.metrics "
         "kitchen_prefs.simulation kitchen_prefs.utils"
     ),
     "lerobot": ("demonstrations execution scene kitchen_prefs.envs kitchen_prefs.utils"),

@@ -76,7 +76,7 @@ class Person:
             self._opened = None if self._opened else decision.drawer
         elif isinstance(decision, Pick):
             self._held = others[decision.dish]
-            self._world.set_dish_pose(self._held, np.array(HAND), self._turn(self._held))
+            take_in_hand(self._world, self._held)
         else:
             assert isinstance(decision, Place)
             self._put(decision.drawer)
@@ -85,15 +85,30 @@ class Person:
         """Put the dish in hand into the next slot of a drawer."""
         assert self._held is not None
         taken = sum(other == drawer for other in self._drawers.values())
-        height = DRAWER_FLOOR[drawer] + real_extents(self.holds or "")[2] / 2 + DROP_HEIGHT
-        place = from_cabinet(np.array([*SLOTS[taken % len(SLOTS)], height]))
-        self._world.set_dish_pose(self._held, place, self._turn(self._held))
-        self._world.advance(SETTLING)
+        put_into_drawer(self._world, self._held, drawer, taken)
         self._drawers[self._held] = drawer
         self._held = None
 
-    def _turn(self, number: int) -> np.ndarray:
-        return self._world.dish_pose(number)[1]
+
+def take_in_hand(world: World, number: int) -> None:
+    """Hold a dish where the cameras see it in a person's hand."""
+    world.set_dish_pose(number, np.array(HAND), world.dish_pose(number)[1])
+
+
+def put_into_drawer(world: World, number: int, drawer: str, already: int) -> None:
+    """Put a dish into the next slot of an open drawer, and let it come to rest.
+
+    Args:
+        world: In which it moves.
+        number: The dish's number.
+        drawer: "upper" or "lower".
+        already: How many dishes lie in that drawer.
+    """
+    category = world.scene.dishes[number].category
+    height = DRAWER_FLOOR[drawer] + real_extents(category)[2] / 2 + DROP_HEIGHT
+    place = from_cabinet(np.array([*SLOTS[already % len(SLOTS)], height]))
+    world.set_dish_pose(number, place, world.dish_pose(number)[1])
+    world.advance(SETTLING)
 
 
 def slide_drawer(world: World, drawer: str, opening: float, inside: Iterable[int]) -> None:

@@ -7,7 +7,6 @@ import numpy as np
 from gymnasium.error import ResetNeeded
 from gymnasium.spaces import Box, Dict
 
-from kitchen_prefs import instances
 from kitchen_prefs.envs.spaces import action_space, observation_space
 from kitchen_prefs_robot.demonstrations.preferences import HUMAN_PREFERENCES, human_preference
 from kitchen_prefs_robot.execution.conditions import Conditions
@@ -15,13 +14,12 @@ from kitchen_prefs_robot.execution.episode import RobotEpisode, Step
 from kitchen_prefs_robot.execution.looking import SIZE
 from kitchen_prefs_robot.execution.outcomes import outcome_of
 from kitchen_prefs_robot.execution.prompts import prompt_for
-from kitchen_prefs_robot.execution.trials import trials
+from kitchen_prefs_robot.execution.trials import observe_episode, trials
 from kitchen_prefs_robot.scene import Pictures
 from kitchen_prefs_robot.scene.views import CAMERAS, VISITOR
 from kitchen_prefs_robot.task.decisions import Place
 from kitchen_prefs_robot.task.rollouts import TASK
 from kitchen_prefs_robot.task.rows import chosen_decision
-from kitchen_prefs_robot.task.summaries import summarise
 
 SCENES = 50
 MAX_EPISODE_STEPS = 24  # twice the expert's decisions
@@ -144,17 +142,14 @@ class Drawers(gymnasium.Env):
 
     def _observe(self) -> dict[str, Any]:
         episode = self.episode
-        environment_state, agent = summarise(episode.state, len(episode.steps))
         if episode.look.frames:
             frames = episode.look.frames
             self._pixels = {camera: frame.colour for camera, frame in frames.items()}
         width, height = SIZE
         blank = np.zeros((height, width, 3), np.uint8)  # where truth is given, nobody looks
-        return {
-            "instances": instances.pack(episode.rows).reshape(self._set_shape),
-            "environment_state": environment_state,
-            "agent_pos": agent,
-            "prompt": self._prompt.copy(),
+        observed = observe_episode(episode, self._prompt.copy())
+        return observed | {
+            "instances": observed["instances"].reshape(self._set_shape),
             "pixels": {camera: self._pixels.get(camera, blank) for camera in CAMERAS},
         }
 

@@ -4,7 +4,11 @@ from typing import Protocol
 
 import numpy as np
 
-from kitchen_prefs_robot.demonstrations.person import SETTLING, SLOTS, slide_drawer
+from kitchen_prefs_robot.demonstrations.person import (
+    put_into_drawer,
+    slide_drawer,
+    take_in_hand,
+)
 from kitchen_prefs_robot.execution.looking import Look, TableDish
 from kitchen_prefs_robot.execution.whereabouts import drawer_of, highest, nearest_on_table
 from kitchen_prefs_robot.motion.drawers import close_drawer, open_drawer
@@ -12,15 +16,12 @@ from kitchen_prefs_robot.motion.dropping import drop
 from kitchen_prefs_robot.motion.moves import OnFrame
 from kitchen_prefs_robot.motion.outcomes import Result
 from kitchen_prefs_robot.motion.picking import PickOutcome, pick, put_back
-from kitchen_prefs_robot.perception.regions import HAND
 from kitchen_prefs_robot.scene import World
-from kitchen_prefs_robot.scene.layout import DRAWER_FLOOR, DRAWER_TRAVEL, from_cabinet
-from kitchen_prefs_robot.scene.tableware import real_extents
+from kitchen_prefs_robot.scene.layout import DRAWER_TRAVEL
 
 # m to the side of a dish, where a pick that is led astray takes its points to be: half of that, and
 # it would grasp a bowl by its other wall.
 ASTRAY = 0.09
-DROP_HEIGHT = 0.01  # m over the drawer's floor, from which the invisible hand drops
 
 
 class Hand(Protocol):
@@ -108,19 +109,12 @@ class InvisibleHand:
     def pick(self, dish: TableDish) -> Result:
         """Take the dish that is nearest to where one was seen."""
         self.held = nearest_on_table(self._world, dish.middle)
-        self._put(np.array(HAND))
+        take_in_hand(self._world, self.held)
         return Result.DONE
 
     def drop(self, drawer: str, already: int) -> Result:
         """Drop what is held into its slot of the drawer."""
         assert self.held is not None
-        category = self._world.scene.dishes[self.held].category
-        height = DRAWER_FLOOR[drawer] + real_extents(category)[2] / 2 + DROP_HEIGHT
-        self._put(from_cabinet(np.array([*SLOTS[already % len(SLOTS)], height])))
-        self._world.advance(SETTLING)
+        put_into_drawer(self._world, self.held, drawer, already)
         self.held = None
         return Result.DONE
-
-    def _put(self, place: np.ndarray) -> None:
-        assert self.held is not None
-        self._world.set_dish_pose(self.held, place, self._world.dish_pose(self.held)[1])

@@ -1,6 +1,5 @@
 """An episode for rerun's viewer: cameras, clusters and decisions; nothing where it is missing."""
 
-import colorsys
 from collections.abc import Sequence
 from importlib.util import find_spec
 from pathlib import Path
@@ -8,7 +7,7 @@ from typing import Any
 
 from kitchen_prefs_robot.perception.cloud import Frame
 from kitchen_prefs_robot.perception.detection import Detection
-from kitchen_prefs_robot.perception.pictures import GOLDEN
+from kitchen_prefs_robot.perception.pictures import cluster_colour
 
 NAME = "kitchen_prefs_drawers"
 
@@ -36,8 +35,9 @@ class RerunLog:
         self._recording.set_time("decision", sequence=decision)
         self._recording.log("cameras/front", self._rerun.Image(frame.colour))
         for number, dish in enumerate(detections):
-            colour = colorsys.hsv_to_rgb(GOLDEN * number % 1.0, 0.9, 0.95)
-            points = self._rerun.Points3D(dish.cloud.points, colors=colour, radii=0.003)
+            points = self._rerun.Points3D(
+                dish.cloud.points, colors=cluster_colour(number), radii=0.003
+            )
             self._recording.log(f"clusters/{number}", points)
 
     def step(self, decision: int, text: str) -> None:

@@ -73,10 +73,14 @@ def run_trial(
 
 def act(policy: Policy, episode: RobotEpisode, prompt: np.ndarray) -> Sequence[float]:
     """The policy's next action, a pose (7,)."""
+    return policy.act([observe_episode(episode, prompt)], [TASK])[0].tolist()
+
+
+def observe_episode(episode: RobotEpisode, prompt: np.ndarray) -> dict[str, np.ndarray]:
+    """What a policy observes before the next decision, without the cameras' pictures."""
     summary, agent = summarise(episode.state, len(episode.steps))
     observation = policy_observation(episode.rows, prompt)
-    observation |= {"environment_state": summary, "agent_pos": agent}
-    return policy.act([observation], [TASK])[0].tolist()
+    return observation | {"environment_state": summary, "agent_pos": agent}
 
 
 def trials(scenes: int, preferences: int) -> Iterator[Trial]:

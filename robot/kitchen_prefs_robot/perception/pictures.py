@@ -29,9 +29,13 @@ def beside_clusters(frame: Frame, pose: np.ndarray, dishes: Sequence[Detection])
     points = moved(deproject(frame), pose).points
     for number, dish in enumerate(dishes):
         near = _is_near(points, dish.cloud)
-        hue = colorsys.hsv_to_rgb(GOLDEN * number % 1.0, 0.9, 0.95)
-        grey[rows[near], columns[near]] = 255 * np.array(hue)
+        grey[rows[near], columns[near]] = 255 * np.array(cluster_colour(number))
     return np.concatenate([frame.colour, grey.astype(np.uint8)], axis=1)
+
+
+def cluster_colour(number: int) -> tuple[float, float, float]:
+    """The RGB, from 0 to 1, in which a cluster is shown."""
+    return colorsys.hsv_to_rgb(GOLDEN * number % 1.0, 0.9, 0.95)
 
 
 def _is_near(points: np.ndarray, cluster: Cloud) -> np.ndarray:
