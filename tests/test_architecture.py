@@ -28,6 +28,7 @@ BENCHMARK = {
     "envs": "instances metrics preferences rendering simulation splits utils",
     "datasets": "envs instances metrics preferences rendering simulation splits utils",
     "evaluation": "envs metrics simulation splits utils",
+    "web": "preferences simulation splits",
     "cli": "datasets evaluation physics",
     "__init__": "datasets",
 }
@@ -110,8 +111,8 @@ LEADERBOARD = {
     "score_formats": "scoring verification kitchen_prefs.metrics",
     "hub_upload": "scoring kitchen_prefs.splits kitchen_prefs.utils",
     "page": (
-        "judgement ranking scoring kitchen_prefs.metrics kitchen_prefs.preferences "
-        "kitchen_prefs.simulation kitchen_prefs.splits kitchen_prefs.utils"
+        "judgement ranking scoring kitchen_prefs.metrics kitchen_prefs.splits kitchen_prefs.utils "
+        "kitchen_prefs.web"
     ),
     "commands": (
         "hub_upload page policy_runs ranking recording_reading reruns score_formats scoring "

@@ -88,6 +88,7 @@ def test_data_recipes_and_checkpoints_are_installed(names):
     assert "kitchen_prefs/simulation/placements.npz" in names
     assert "kitchen_prefs/datasets/fingerprints.json" in names
     assert "kitchen_prefs/datasets/card.md" in names
+    assert "kitchen_prefs/web/templates/kitchen.js" in names
     assert "kitchen_prefs_experiments/recipes/ttp_quick.yaml" in names
     assert "kitchen_prefs_experiments/checkpoints/manifest.json" in names
     assert "kitchen_prefs_experiments/checkpoints/ttp_paper/model.safetensors" in names

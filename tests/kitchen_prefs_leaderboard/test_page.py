@@ -5,7 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from playwright.sync_api import sync_playwright
+from chromium import PATIENCE, needs_chromium, opened, running_chromium
 from typer.testing import CliRunner
 
 from kitchen_prefs import instances
@@ -21,8 +21,6 @@ from kitchen_prefs_leaderboard.scoring import Entry, score_submissions
 from kitchen_prefs_leaderboard.submission_format import Plugin, Policy
 from kitchen_prefs_leaderboard.verification import ScoreInterval, Verification
 
-CHROMIUM = Path("/usr/bin/chromium")
-PATIENCE = 120_000  # milliseconds; the machine may be busy
 HTML_NAME = "<img src=x onerror=document.title='run'></script><b>"
 SCORES = Path(__file__).parents[2] / "leaderboard" / "scores.json"
 PLUGIN = Plugin(distribution="lerobot_policy_elsewhere", version="1.2", code="c" * 64)
@@ -32,7 +30,7 @@ pytestmark = [
     pytest.mark.xdist_group("page"),
     pytest.mark.browser,
     pytest.mark.slow,
-    pytest.mark.skipif(not CHROMIUM.exists(), reason="needs Debian's chromium"),
+    needs_chromium,
 ]
 
 
@@ -117,28 +115,15 @@ def file(tables, tmp_path_factory):
 @pytest.fixture(scope="module")
 def browser():
     """A browser without a window."""
-    with sync_playwright() as driver:
-        browser = driver.chromium.launch(
-            executable_path=str(CHROMIUM), args=["--no-sandbox"], timeout=PATIENCE
-        )
+    with running_chromium() as browser:
         yield browser
-        browser.close()
 
 
 @pytest.fixture
 def page(browser, file):
     """The page, opened; at the end the console is empty and nothing was fetched."""
-    page = browser.new_page(viewport={"width": 1280, "height": 900})
-    page.set_default_timeout(PATIENCE)
-    messages, requests = [], []
-    page.on("console", lambda message: messages.append(message.text))
-    page.on("pageerror", lambda error: messages.append(str(error)))
-    page.on("request", lambda request: requests.append(request.url))
-    page.goto(file.as_uri())
-    yield page
-    page.close()
-    assert messages == []
-    assert [url for url in requests if not url.startswith("data:")] == [file.as_uri()]
+    with opened(browser, file, viewport={"width": 1280, "height": 900}) as page:
+        yield page
 
 
 def names(page, track="privileged", block="replayed only"):
@@ -300,7 +285,7 @@ def test_every_episode_ends_as_in_the_kitchen(page, tables):
     ends = page.evaluate(
         """() => data.entries.map((entry) => SPLITS.map((split) =>
             entry.episodes[split].map(([decisions, refused], number) => {
-                const { steps } = replay(data.sessions[split][number], decisions, refused);
+                const steps = replay(data.sessions[split][number], decisions, refused);
                 const { places, doorOpen, out } = steps.at(-1).state;
                 const count = (place) => places.filter((one) => one === place).length;
                 return [count("top") + count("bottom"), count("sink"), !doorOpen && out === null];

@@ -1,17 +1,12 @@
 """Building the page: entries as plain data, and the data in the page.
 
-A submission is untrusted input. The page holds it as JSON in which no HTML can begin, and the
-scripts show it as text alone.
+A submission is untrusted input; `kitchen_prefs.web.page` says how the page holds it.
 """
 
-import base64
-import hashlib
-import json
 from collections.abc import Mapping, Sequence
 from dataclasses import astuple
 from importlib.resources import files
 from pathlib import Path
-from string import Template
 from typing import Any
 
 from kitchen_prefs.metrics import (
@@ -24,29 +19,33 @@ from kitchen_prefs.metrics import (
 )
 from kitchen_prefs.splits import DATA_VERSION, TEST_SPLITS, get_split
 from kitchen_prefs.utils.files import atomic_file
+from kitchen_prefs.web.kitchen_data import layout_data, preferences_in_words, sessions_data
+from kitchen_prefs.web.page import SHARED, joined, self_contained_page
 from kitchen_prefs_leaderboard.judgement import rerun_score
-from kitchen_prefs_leaderboard.page.page_data import (
-    episode_data,
-    layout_data,
-    preferences_in_words,
-    sessions_data,
-)
+from kitchen_prefs_leaderboard.page.episode_data import episode_data
 from kitchen_prefs_leaderboard.ranking import Row
 from kitchen_prefs_leaderboard.scoring import MEAN
 
 TEMPLATES = files("kitchen_prefs_leaderboard.page") / "templates"
-# Joined in this order into one script.
-SCRIPTS = ("basics", "table", "charts", "failure_modes", "kitchen", "drawing", "viewer", "page")
+# Joined in this order into one style sheet and one script.
+STYLES = (SHARED / "house.css", SHARED / "drawing.css", TEMPLATES / "page.css")
+SCRIPTS = (
+    SHARED / "basics.js",
+    TEMPLATES / "entries.js",
+    TEMPLATES / "table.js",
+    TEMPLATES / "charts.js",
+    TEMPLATES / "failure_modes.js",
+    SHARED / "kitchen.js",
+    SHARED / "replay.js",
+    SHARED / "drawing.js",
+    TEMPLATES / "viewer.js",
+    TEMPLATES / "page.js",
+)
 # Charts by the number of dishes: a split with the counts of training, and one with other counts.
 BY_COUNT = {
     "Training preferences": ("seen", "unseen_counts"),
     "Held-out preferences": ("unseen_preferences", "unseen_both"),
 }
-# Nothing is fetched, nothing is sent, and only this file's own style and script are used.
-POLICY = (
-    "default-src 'none'; style-src {style}; script-src {script}; img-src data:; "
-    "base-uri 'none'; form-action 'none'"
-)
 
 
 def write_page(tables: Mapping[str, Sequence[Row]], out: Path) -> None:
@@ -81,13 +80,11 @@ def page_data(tables: Mapping[str, Sequence[Row]]) -> dict[str, Any]:
 
 def to_html(data: Mapping[str, Any]) -> str:
     """The page that shows some data."""
-    style = _template("page.css")
-    script = "\n".join(_template(f"{name}.js") for name in SCRIPTS)
-    return Template(_template("page.html")).substitute(
-        policy=POLICY.format(style=_hash(style), script=_hash(script)),
-        style=style,
-        script=script,
-        data=_escaped_json(data),
+    return self_contained_page(
+        template=joined(TEMPLATES / "page.html"),
+        style=joined(*STYLES),
+        script=joined(*SCRIPTS),
+        data=data,
     )
 
 
@@ -135,21 +132,3 @@ def _by_count(episodes: Sequence[Episode]) -> list[list[float]]:
 
 def _numbers(interval: Interval) -> list[float]:
     return list(astuple(interval.rounded()))
-
-
-def _escaped_json(data: Mapping[str, Any]) -> str:
-    """JSON that contains neither a tag nor a character reference."""
-    text = json.dumps(data, separators=(",", ":"), allow_nan=False)
-    for character in "<>&":
-        text = text.replace(character, f"\\u{ord(character):04x}")
-    return text
-
-
-def _template(name: str) -> str:
-    return (TEMPLATES / name).read_text(encoding="utf-8")
-
-
-def _hash(content: str) -> str:
-    """How a content security policy names the content of a style or script element."""
-    digest = hashlib.sha256(content.encode()).digest()
-    return f"'sha256-{base64.b64encode(digest).decode()}'"

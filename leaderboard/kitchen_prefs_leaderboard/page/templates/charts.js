@@ -23,7 +23,6 @@ function bar(index, from, to) {
 
 const nameOf = (index) => data.entries[index].submission.name;
 const shorten = (text, most) => (text.length > most ? `${text.slice(0, most - 1)}\u2026` : text);
-const label = (x, y, text, name = "") => svg("text", { x, y, class: name }, text);
 
 /** The ticked entries in the table's order. */
 const ticked = () => [...shown].sort((a, b) => a - b);

@@ -1,5 +1,5 @@
 const PACE = 700; // milliseconds a step
-const viewer = { policy: null, expert: null, step: 0, last: 0, timer: null };
+const viewer = { policy: [], expert: [], step: 0, last: 0, timer: null };
 
 const chosen = (id) => Number(byId(`viewer-${id}`).value);
 const chosenSplit = () => byId("viewer-split").value;
@@ -58,8 +58,8 @@ function openEpisode() {
   const session = data.sessions[chosenSplit()][number];
   const episode = entry.episodes[chosenSplit()][number];
   viewer.policy = replay(session, episode[0], episode[1]);
-  viewer.expert = replay(session, session.expert);
-  viewer.last = Math.max(viewer.policy.steps.length, viewer.expert.steps.length) - 1;
+  viewer.expert = replay(session, session.expert, []);
+  viewer.last = Math.max(viewer.policy.length, viewer.expert.length) - 1;
   byId("preference").textContent = `\u201c${data.preferences[session.preference]}\u201d`;
   byId("episode-facts").textContent = episodeFacts(episode);
   byId("policy-name").textContent = entry.submission.name;
@@ -77,12 +77,12 @@ function goTo(step) {
 }
 
 function showStep(who, name) {
-  const { dishes, steps } = viewer[who];
+  const steps = viewer[who];
   const end = steps.length - 1;
   const now = Math.min(viewer.step, end);
   const { state, text, refused } = steps[now];
   byId(`${who}-step`).textContent = `${now} of ${end}`;
-  byId(`${who}-drawing`).replaceChildren(drawKitchen(state, dishes, `${name}: ${text}`));
+  byId(`${who}-drawing`).replaceChildren(drawKitchen(state, `${name}: ${text}`));
   byId(`${who}-timeline`).replaceChildren(drawTimeline(steps, now, viewer.last));
   byId(`${who}-decision`).textContent = viewer.step > end ? `${text}; finished` : text;
   byId(`${who}-decision`).classList.toggle("refused", refused);

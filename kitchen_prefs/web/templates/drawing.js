@@ -40,7 +40,8 @@ function halfAxes(category) {
 }
 
 /** Where a dish is drawn: x, y, half axes, angle and zoom. */
-function spotOf(state, dish, i, sunk) {
+function spotOf(state, i, sunk) {
+  const dish = state.dishes[i];
   const [width, depth] = halfAxes(dish.category);
   const place = state.places[i];
   if (place === "counter") return [counterX(dish.x), counterY(dish.y), width, depth, dish.angle, 1];
@@ -56,17 +57,18 @@ function spotOf(state, dish, i, sunk) {
     RACK_TOP + RACK[1] / 2 - (y / CENTIMETRE) * ZOOM, a / CENTIMETRE, b / CENTIMETRE, angle, ZOOM];
 }
 
-function drawDish(state, dish, i, sunk) {
-  const [x, y, a, b, angle, zoom] = spotOf(state, dish, i, sunk);
-  const name = data.layout.categories[dish.category];
+function drawDish(state, i, sunk) {
+  const [x, y, a, b, angle, zoom] = spotOf(state, i, sunk);
+  const { category } = state.dishes[i];
+  const name = data.layout.categories[category];
   const marks = `${state.held === i ? " held" : ""}${state.moved === i ? " moved" : ""}`;
   return svg("g", {
-    class: `dish d${dish.category}${marks}`,
+    class: `dish d${category}${marks}`,
     "data-place": state.places[i],
     transform: `translate(${x.toFixed(1)},${y.toFixed(1)}) rotate(${-angle}) scale(${zoom})`,
   },
   svg("title", {}, state.held === i ? `${name}, in hand` : name),
-  ...dishShape(dish.category, a, b));
+  ...dishShape(category, a, b));
 }
 
 function drawRack(state, rack, dishes) {
@@ -101,11 +103,11 @@ function drawDoor(state) {
 }
 
 /** One state of the kitchen. */
-function drawKitchen(state, dishes, title) {
+function drawKitchen(state, title) {
   const drawn = { counter: [], sink: [], top: [], bottom: [] };
-  dishes.forEach((dish, i) => {
-    const of = drawn[state.places[i]];
-    if (of) of.push(drawDish(state, dish, i, of.length));
+  state.places.forEach((place, i) => {
+    const of = drawn[place];
+    if (of) of.push(drawDish(state, i, of.length));
   });
   const viewBox = `-3 -3 ${WIDTH + 6} ${HEIGHT + 6}`;
   return svg("svg", { viewBox, role: "img", "aria-label": title },

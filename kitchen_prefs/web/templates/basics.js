@@ -1,13 +1,6 @@
 "use strict";
 
 const data = JSON.parse(document.getElementById("data").textContent);
-const SPLITS = Object.keys(data.splits);
-const TRACKS = {
-  standard: "Trained on train alone; the prompt is one demonstration.",
-  privileged: "The policy reads the preference's label.",
-  language: "The policy reads the preference in words.",
-  open: "Anything may be used, the simulator in training included.",
-};
 const SVG = "http://www.w3.org/2000/svg";
 
 const byId = (id) => document.getElementById(id);
@@ -16,6 +9,14 @@ const words = (name) => name.replaceAll("_", " ");
 const fixed = (value, digits = 3) =>
   value.toFixed(digits).replace(/^-(?=[0.]*$)/, "").replace("-", "\u2212");
 const short = (value) => fixed(value).replace(/^(\u2212?)0\./, "$1."); // in narrow columns
+
+/** Bytes that JSON holds in base64. */
+function bytesOf(base64) {
+  const text = atob(base64);
+  const bytes = new Uint8Array(text.length);
+  for (let i = 0; i < text.length; i += 1) bytes[i] = text.charCodeAt(i);
+  return bytes;
+}
 
 /** Give an element attributes and children. No string is ever parsed as HTML. */
 function fill(element, attributes, children) {
@@ -37,6 +38,9 @@ function svg(tag, attributes = {}, ...children) {
   return fill(document.createElementNS(SVG, tag), attributes, children);
 }
 
+/** A text in a drawing. */
+const label = (x, y, text, name = "") => svg("text", { x, y, class: name }, text);
+
 /** A link out of the page; anything but a web address is shown as text. */
 function linkTo(address) {
   if (!/^https?:\/\//.test(address)) return html("span", {}, address);
@@ -50,7 +54,15 @@ function setOptions(select, pairs) {
   if (pairs.some(([value]) => String(value) === chosen)) select.value = chosen;
 }
 
-/** The entries as choices, each with its track, as names may repeat. */
-function entryChoices() {
-  return data.entries.map(({ submission }, i) => [i, `${submission.name} (${submission.track})`]);
+/** The button that changes between the light and the dark theme; at first the system's applies. */
+function startTheme(button) {
+  const root = document.documentElement;
+  const system = matchMedia("(prefers-color-scheme: dark)");
+  const dark = () => (root.dataset.theme ? root.dataset.theme === "dark" : system.matches);
+  const showLabel = () => { button.textContent = dark() ? "Light" : "Dark"; };
+  button.addEventListener("click", () => {
+    root.dataset.theme = dark() ? "light" : "dark";
+    showLabel();
+  });
+  showLabel();
 }

@@ -1,23 +1,16 @@
-"""What the page draws of episodes, as numbers that are short in JSON.
+"""The kitchen and its sessions, as numbers that are short in JSON; kitchen.js has the rules.
 
 A dish is seen from above. It is drawn as the projection of an ellipsoid of its extents: an ellipse
-with a centre, two half axes and an angle; lengths are in millimetres, angles in degrees. The page
-itself replays what a decision changes (kitchen.js).
+with a centre, two half axes and an angle; lengths are in millimetres, angles in degrees.
 """
 
+import base64
 from collections.abc import Iterable
+from typing import Any
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from kitchen_prefs.metrics import (
-    Episode,
-    category_edit_similarity,
-    failure_modes,
-    packing_efficiency,
-    score,
-    success,
-)
 from kitchen_prefs.preferences import CATEGORIES
 from kitchen_prefs.simulation import layout
 from kitchen_prefs.simulation.kitchen import placement_table, rack_position
@@ -29,12 +22,15 @@ from kitchen_prefs.simulation.sessions import (
 )
 from kitchen_prefs.splits import get_split
 
-DIGITS = 3  # of an episode's metrics
 MILLIMETRES = 1000
 
 
-def layout_data() -> dict:
-    """The kitchen's measures and the placements, which are the same in both racks."""
+def layout_data() -> dict[str, Any]:
+    """The kitchen's measures and the placements, which are the same in both racks.
+
+    `blocks` has one bit for each pair of placements, row by row: whether the first one's dish
+    stands in the second one's way.
+    """
     table = placement_table()
     origin = np.array([*rack_position("top", out=True), 0, 0, 0, 0])
     return {
@@ -47,49 +43,30 @@ def layout_data() -> dict:
             [int(category), *_projection(layout.EXTENTS[CATEGORIES[category]], pose)]
             for category, pose in zip(table.category, table.pose["top"] - origin, strict=True)
         ],
+        "blocks": base64.b64encode(np.packbits(table.blocks).tobytes()).decode(),
     }
 
 
-def session_data(split: str, index: int) -> dict:
+def session_data(session: Session) -> dict[str, Any]:
     """A session's dishes and the expert's decisions."""
-    session = make_session(split, index)
-    expert = expert_trajectory(session)
     return {
         "count": session.count,
         "preference": session.label,
         "present": session.dishes.present,
         "dishes": _on_counter(session),
-        "expert": expert.decisions,
+        "expert": expert_trajectory(session).decisions,
     }
 
 
-def episode_data(episode: Episode) -> list:
-    """A policy's decisions in an episode, and their result.
-
-    Returns:
-        Decisions; the steps at which they were refused; Score, PE and ED_c; whether it is a
-        success; one bit for each of `failure_modes`.
-    """
-    metrics = (score, packing_efficiency, category_edit_similarity)
-    modes = failure_modes(episode).values()
-    return [
-        episode.decisions,
-        [step for step, refused in enumerate(episode.refused) if refused],
-        [round(metric(episode), DIGITS) for metric in metrics],
-        int(success(episode)),
-        sum((times > 0) << bit for bit, times in enumerate(modes)),
-    ]
-
-
-def sessions_data(splits: Iterable[str]) -> dict[str, list[dict]]:
+def sessions_data(splits: Iterable[str]) -> dict[str, list[dict[str, Any]]]:
     """All sessions of some splits."""
     return {
-        split: [session_data(split, index) for index in range(get_split(split).sessions)]
+        split: [session_data(make_session(split, i)) for i in range(get_split(split).sessions)]
         for split in splits
     }
 
 
-def preferences_in_words(sessions: dict[str, list[dict]]) -> dict[int, str]:
+def preferences_in_words(sessions: dict[str, list[dict[str, Any]]]) -> dict[int, str]:
     """The sentence of each preference that sessions have, by its label."""
     labels = {session["preference"] for of_split in sessions.values() for session in of_split}
     return {label: preference_with(label).in_words for label in sorted(labels)}
