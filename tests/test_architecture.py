@@ -13,6 +13,7 @@ PACKAGES = {
     "kitchen_prefs_experiments": ROOT / "policies/kitchen_prefs_experiments",
     "kitchen_prefs_leaderboard": ROOT / "leaderboard/kitchen_prefs_leaderboard",
     "kitchen_prefs_robot": ROOT / "robot/kitchen_prefs_robot",
+    "kitchen_prefs_demonstrations": ROOT / "demonstrations/kitchen_prefs_demonstrations",
 }
 
 # The benchmark, from the bottom up. The nouns that all share are modules, the rooms are folders.
@@ -151,6 +152,14 @@ ROBOT = {
     "__init__": "",
 }
 
+DEMONSTRATIONS = {
+    "page": (
+        "kitchen_prefs.envs kitchen_prefs.evaluation kitchen_prefs.instances "
+        "kitchen_prefs.preferences kitchen_prefs.simulation kitchen_prefs.web"
+    ),
+    "__init__": "",
+}
+
 
 def graph(package, arrows):
     """Room -> the rooms that it may import, all by their full names."""
@@ -167,6 +176,7 @@ ALLOWED = (
     | graph("kitchen_prefs_experiments", EXPERIMENTS)
     | graph("kitchen_prefs_leaderboard", LEADERBOARD)
     | graph("kitchen_prefs_robot", ROBOT)
+    | graph("kitchen_prefs_demonstrations", DEMONSTRATIONS)
 )
 
 

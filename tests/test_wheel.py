@@ -18,6 +18,7 @@ PACKAGES = {
     "kitchen_prefs_experiments",
     "kitchen_prefs_leaderboard",
     "kitchen_prefs_robot",
+    "kitchen_prefs_demonstrations",
 }
 MOST_BYTES = 40e6
 
@@ -93,6 +94,7 @@ def test_data_recipes_and_checkpoints_are_installed(names):
     assert "kitchen_prefs_experiments/checkpoints/manifest.json" in names
     assert "kitchen_prefs_experiments/checkpoints/ttp_paper/model.safetensors" in names
     assert "kitchen_prefs_leaderboard/page/templates/page.html" in names
+    assert "kitchen_prefs_demonstrations/page/templates/ttp.js" in names
 
 
 def test_it_stays_small(wheel):

@@ -38,7 +38,8 @@ function kitchenAtStart(session) {
 
 // What is visible ---------------------------------------------------------------------------------
 
-const dishesAt = (state, place) => [...state.places.keys()].filter((i) => state.places[i] === place);
+const dishesAt = (state, place) =>
+  [...state.places.keys()].filter((i) => state.places[i] === place);
 
 /** The dishes on the counter, the one in hand included. */
 const counterDishes = (state) => dishesAt(state, "counter");

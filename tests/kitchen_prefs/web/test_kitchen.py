@@ -4,19 +4,15 @@ import json
 
 import numpy as np
 import pytest
-from chromium import needs_chromium, opened, running_chromium
+from chromium import bare_page, needs_chromium
 
 from kitchen_prefs.simulation import kitchen as k
 from kitchen_prefs.simulation.expert import KitchenView, choose
 from kitchen_prefs.simulation.kitchen import Kitchen, Location
 from kitchen_prefs.simulation.sessions import expert_trajectory, make_session
 from kitchen_prefs.web.kitchen_data import layout_data, session_data
-from kitchen_prefs.web.page import SHARED, joined, self_contained_page
+from kitchen_prefs.web.page import SHARED, joined
 
-TEMPLATE = """<!doctype html><meta charset="utf-8">
-<meta http-equiv="Content-Security-Policy" content="$policy"><link rel="icon" href="data:,">
-<style>$style</style><script type="application/json" id="data">$data</script>
-<script>$script</script>"""
 SPLITS = ("seen", "unseen_counts", "many_preferences", "noisy")
 SESSIONS_OF_EACH = 12
 EXPERT_SHARE = 0.3  # so that arbitrary decisions come in every state, and sessions end
@@ -105,8 +101,7 @@ def page(tmp_path_factory):
     """A page with the kitchen's rules and nothing to see."""
     file = tmp_path_factory.mktemp("kitchen") / "kitchen.html"
     script = joined(SHARED / "basics.js", SHARED / "kitchen.js", SHARED / "replay.js")
-    file.write_text(self_contained_page(TEMPLATE, "", script, {"layout": layout_data()}))
-    with running_chromium() as browser, opened(browser, file) as page:
+    with bare_page(file, script, {"layout": layout_data()}) as page:
         yield page
 
 
