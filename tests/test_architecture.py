@@ -11,6 +11,7 @@ PACKAGES = {
     "kitchen_prefs": ROOT / "kitchen_prefs",
     "lerobot_policy_kitchen_prefs": ROOT / "policies/lerobot_policy_kitchen_prefs",
     "kitchen_prefs_experiments": ROOT / "policies/kitchen_prefs_experiments",
+    "kitchen_prefs_demonstrations": ROOT / "demonstrations/kitchen_prefs_demonstrations",
     "kitchen_prefs_leaderboard": ROOT / "leaderboard/kitchen_prefs_leaderboard",
     "kitchen_prefs_robot": ROOT / "robot/kitchen_prefs_robot",
 }
@@ -73,18 +74,23 @@ EXPERIMENTS = {
     ),
     "__init__": "",
 }
+DEMONSTRATIONS = {
+    "file_format": "kitchen_prefs.envs kitchen_prefs.simulation kitchen_prefs.utils",
+    "kitchens": "kitchen_prefs.simulation kitchen_prefs.splits",
+    "replaying": "file_format kitchen_prefs.envs kitchen_prefs.simulation kitchen_prefs.splits",
+    "__init__": "",
+}
 LEADERBOARD = {
-    "visible_text": "",
-    "submission_format": "visible_text kitchen_prefs.envs kitchen_prefs.splits",
+    "submission_format": "kitchen_prefs.envs kitchen_prefs.splits kitchen_prefs.utils",
     "plugin_identity": "submission_format",
-    "submission_reading": "submission_format kitchen_prefs.splits",
+    "submission_reading": "submission_format kitchen_prefs.splits kitchen_prefs.utils",
     "replay": (
         "submission_format submission_reading kitchen_prefs.envs kitchen_prefs.instances "
         "kitchen_prefs.metrics kitchen_prefs.simulation"
     ),
     "scoring": (
-        "replay submission_format submission_reading visible_text kitchen_prefs.datasets "
-        "kitchen_prefs.metrics kitchen_prefs.splits"
+        "replay submission_format submission_reading kitchen_prefs.datasets "
+        "kitchen_prefs.metrics kitchen_prefs.splits kitchen_prefs.utils"
     ),
     "recording_reading": (
         "kitchen_prefs.datasets kitchen_prefs.envs kitchen_prefs.instances kitchen_prefs.metrics "
@@ -164,6 +170,7 @@ ALLOWED = (
     graph("kitchen_prefs", BENCHMARK)
     | graph("lerobot_policy_kitchen_prefs", POLICIES)
     | graph("kitchen_prefs_experiments", EXPERIMENTS)
+    | graph("kitchen_prefs_demonstrations", DEMONSTRATIONS)
     | graph("kitchen_prefs_leaderboard", LEADERBOARD)
     | graph("kitchen_prefs_robot", ROBOT)
 )
