@@ -28,7 +28,7 @@ BENCHMARK = {
     "rendering": "physics preferences simulation utils",
     "envs": "instances metrics preferences rendering simulation splits utils",
     "datasets": "envs instances metrics preferences rendering simulation splits utils",
-    "evaluation": "envs metrics simulation splits utils",
+    "evaluation": "datasets envs metrics simulation splits utils",
     "cli": "datasets evaluation physics",
     "__init__": "datasets",
 }
@@ -78,6 +78,23 @@ DEMONSTRATIONS = {
     "file_format": "kitchen_prefs.envs kitchen_prefs.simulation kitchen_prefs.utils",
     "kitchens": "kitchen_prefs.simulation kitchen_prefs.splits",
     "replaying": "file_format kitchen_prefs.envs kitchen_prefs.simulation kitchen_prefs.splits",
+    "implied_preference": (
+        "replaying kitchen_prefs.preferences kitchen_prefs.simulation "
+        "lerobot_policy_kitchen_prefs.rules"
+    ),
+    "importing": (
+        "implied_preference replaying kitchen_prefs.datasets kitchen_prefs.envs kitchen_prefs.utils"
+    ),
+    "habits": "replaying kitchen_prefs.preferences kitchen_prefs.simulation",
+    "comparison": (
+        "habits replaying kitchen_prefs.envs kitchen_prefs.metrics kitchen_prefs.preferences "
+        "kitchen_prefs.simulation"
+    ),
+    "agreement": "comparison replaying kitchen_prefs.metrics",
+    "serving": "file_format replaying",
+    "commands": (
+        "agreement comparison file_format importing replaying serving kitchen_prefs.utils"
+    ),
     "__init__": "",
 }
 LEADERBOARD = {

@@ -8,6 +8,7 @@ kitchen refuses changes nothing and is not in the file: a prompt holds none eith
 decisions are never refused, and it would count in the index of the decisions that follow.
 """
 
+import re
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -31,7 +32,8 @@ PERSON = rf"^{WORD}( {WORD})*$"
 Person = Annotated[
     str, StringConstraints(max_length=60, pattern=PERSON), AfterValidator(check_visible)
 ]
-Code = Annotated[str, StringConstraints(pattern=r"^[A-Za-z0-9_-]{1,60}$")]
+CODE = r"^[A-Za-z0-9_-]{1,60}$"
+Code = Annotated[str, StringConstraints(pattern=CODE)]
 Instance = Annotated[int, Field(ge=0, le=MOST_INSTANCE)]
 
 
@@ -84,6 +86,18 @@ class DemonstrationFile(Strict):
     def who(self) -> str | None:
         """Who gave it: a study's participant, or a user by name; None if that is not known."""
         return f"{self.study.name}/{self.study.participant}" if self.study else self.user
+
+
+def check_study_name(name: str) -> None:
+    """Make sure that a study may be called so.
+
+    Raises:
+        ValueError: If not.
+    """
+    if not re.fullmatch(CODE, name):
+        raise ValueError(
+            f"A study's name has 1 to 60 letters, digits, '-' and '_', unlike {name!r}."
+        )
 
 
 def read_demonstration(file: Path) -> DemonstrationFile:

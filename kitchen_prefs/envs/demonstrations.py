@@ -63,7 +63,8 @@ def record(session: Session, decisions: Sequence[int]) -> Demonstration:
     kitchen = Kitchen(session.dishes)
     observer = Observer(kitchen, session.generator("order"), None)
     view = KitchenView(kitchen)
-    observations, flats, chosen, rewards = [], [], [], []
+    observations, flats, rewards = [], [], []
+    chosen: list[int] = []
     for instance in decisions:
         if refusal := kitchen.refusal(instance):
             raise ValueError(f"The kitchen refuses decision {len(chosen) + 1}: {refusal}")
