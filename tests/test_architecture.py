@@ -11,9 +11,9 @@ PACKAGES = {
     "kitchen_prefs": ROOT / "kitchen_prefs",
     "lerobot_policy_kitchen_prefs": ROOT / "policies/lerobot_policy_kitchen_prefs",
     "kitchen_prefs_experiments": ROOT / "policies/kitchen_prefs_experiments",
+    "kitchen_prefs_demonstrations": ROOT / "demonstrations/kitchen_prefs_demonstrations",
     "kitchen_prefs_leaderboard": ROOT / "leaderboard/kitchen_prefs_leaderboard",
     "kitchen_prefs_robot": ROOT / "robot/kitchen_prefs_robot",
-    "kitchen_prefs_demonstrations": ROOT / "demonstrations/kitchen_prefs_demonstrations",
 }
 
 # The benchmark, from the bottom up. The nouns that all share are modules, the rooms are folders.
@@ -28,7 +28,7 @@ BENCHMARK = {
     "rendering": "physics preferences simulation utils",
     "envs": "instances metrics preferences rendering simulation splits utils",
     "datasets": "envs instances metrics preferences rendering simulation splits utils",
-    "evaluation": "envs metrics simulation splits utils",
+    "evaluation": "datasets envs metrics simulation splits utils",
     "web": "preferences simulation splits",
     "cli": "datasets evaluation physics",
     "__init__": "datasets",
@@ -75,18 +75,46 @@ EXPERIMENTS = {
     ),
     "__init__": "",
 }
+DEMONSTRATIONS = {
+    "file_format": "kitchen_prefs.envs kitchen_prefs.simulation kitchen_prefs.utils",
+    "kitchens": "kitchen_prefs.simulation kitchen_prefs.splits",
+    "replaying": "file_format kitchen_prefs.envs kitchen_prefs.simulation kitchen_prefs.splits",
+    "implied_preference": (
+        "replaying kitchen_prefs.preferences kitchen_prefs.simulation "
+        "lerobot_policy_kitchen_prefs.rules"
+    ),
+    "importing": (
+        "implied_preference replaying kitchen_prefs.datasets kitchen_prefs.envs kitchen_prefs.utils"
+    ),
+    "habits": "replaying kitchen_prefs.preferences kitchen_prefs.simulation",
+    "comparison": (
+        "habits replaying kitchen_prefs.envs kitchen_prefs.metrics kitchen_prefs.preferences "
+        "kitchen_prefs.simulation"
+    ),
+    "agreement": "comparison replaying kitchen_prefs.metrics",
+    "serving": "file_format replaying",
+    "page": (
+        "kitchens kitchen_prefs.envs kitchen_prefs.evaluation kitchen_prefs.instances "
+        "kitchen_prefs.physics kitchen_prefs.preferences kitchen_prefs.rendering "
+        "kitchen_prefs.simulation kitchen_prefs.splits kitchen_prefs.web "
+        "kitchen_prefs_experiments.checkpoints"
+    ),
+    "commands": (
+        "agreement comparison file_format importing page replaying serving kitchen_prefs.utils"
+    ),
+    "__init__": "",
+}
 LEADERBOARD = {
-    "visible_text": "",
-    "submission_format": "visible_text kitchen_prefs.envs kitchen_prefs.splits",
+    "submission_format": "kitchen_prefs.envs kitchen_prefs.splits kitchen_prefs.utils",
     "plugin_identity": "submission_format",
-    "submission_reading": "submission_format kitchen_prefs.splits",
+    "submission_reading": "submission_format kitchen_prefs.splits kitchen_prefs.utils",
     "replay": (
         "submission_format submission_reading kitchen_prefs.envs kitchen_prefs.instances "
         "kitchen_prefs.metrics kitchen_prefs.simulation"
     ),
     "scoring": (
-        "replay submission_format submission_reading visible_text kitchen_prefs.datasets "
-        "kitchen_prefs.metrics kitchen_prefs.splits"
+        "replay submission_format submission_reading kitchen_prefs.datasets "
+        "kitchen_prefs.metrics kitchen_prefs.splits kitchen_prefs.utils"
     ),
     "recording_reading": (
         "kitchen_prefs.datasets kitchen_prefs.envs kitchen_prefs.instances kitchen_prefs.metrics "
@@ -152,14 +180,6 @@ ROBOT = {
     "__init__": "",
 }
 
-DEMONSTRATIONS = {
-    "page": (
-        "kitchen_prefs.envs kitchen_prefs.evaluation kitchen_prefs.instances "
-        "kitchen_prefs.preferences kitchen_prefs.simulation kitchen_prefs.web"
-    ),
-    "__init__": "",
-}
-
 
 def graph(package, arrows):
     """Room -> the rooms that it may import, all by their full names."""
@@ -174,9 +194,9 @@ ALLOWED = (
     graph("kitchen_prefs", BENCHMARK)
     | graph("lerobot_policy_kitchen_prefs", POLICIES)
     | graph("kitchen_prefs_experiments", EXPERIMENTS)
+    | graph("kitchen_prefs_demonstrations", DEMONSTRATIONS)
     | graph("kitchen_prefs_leaderboard", LEADERBOARD)
     | graph("kitchen_prefs_robot", ROBOT)
-    | graph("kitchen_prefs_demonstrations", DEMONSTRATIONS)
 )
 
 

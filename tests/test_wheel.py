@@ -15,6 +15,7 @@ ROOT = Path(__file__).parents[1]
 PACKAGES = {
     "kitchen_prefs",
     "lerobot_policy_kitchen_prefs",
+    "kitchen_prefs_demonstrations",
     "kitchen_prefs_experiments",
     "kitchen_prefs_leaderboard",
     "kitchen_prefs_robot",

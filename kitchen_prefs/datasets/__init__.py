@@ -13,6 +13,7 @@ publishing    fingerprints and cards of the published data sets
 commands      `kitchen-prefs datasets`
 
 demonstration_store  the demonstrations of a data set in memory
+prompt_reading       one episode as the prompt of an evaluation
 prompt_step          the prompts of a policy's training, a processor step of LeRobot's
 """
 

@@ -6,7 +6,8 @@ actions            the row that an action chooses
 rewards            the paper's dense reward
 session_choice     which session a reset starts
 episode_simulator  one session, decision by decision
-demonstrations     the expert's episode as a demonstration and as a prompt
+demonstrations     an episode as a demonstration and as a prompt
+given_prompt       a prompt from outside of the benchmark's sessions
 environment        `kitchen_prefs/DishwasherLoading-v0`
 lerobot_env        LeRobot's view of it
 """

@@ -1,5 +1,6 @@
-"""The expert's demonstration of a session: one frame a decision, for data sets and prompts."""
+"""Demonstrations, the expert's and others: one frame a decision, for data sets and prompts."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -15,7 +16,7 @@ from kitchen_prefs.simulation.sessions import Session, expert_trajectory
 
 @dataclass(frozen=True)
 class Demonstration:
-    """The expert's episode of a session, T decisions.
+    """An episode of a session, by the expert or by a person, T decisions.
 
     Attributes:
         instances: The padded instance sets, (T, N, 13) float32.
@@ -25,7 +26,7 @@ class Demonstration:
         chosen_index: The chosen row, (T,) int64.
         reward: The paper's dense reward, (T,) float32.
         done: True at the last decision, (T,) bool.
-        success: True at the last decision, (T,) bool.
+        success: True at the last decision if everything is then put away and closed, (T,) bool.
         preference: The preference's label.
         task: The preference in words.
     """
@@ -44,11 +45,29 @@ class Demonstration:
 
 def demonstrate(session: Session) -> Demonstration:
     """Record the expert's demonstration of a session."""
+    return record(session, expert_trajectory(session).decisions)
+
+
+def record(session: Session, decisions: Sequence[int]) -> Demonstration:
+    """Record decisions in a session as a demonstration.
+
+    Args:
+        session: Where they are taken; its preference gives rewards, label and task.
+        decisions: The chosen instances, whoever chose them, T of them.
+
+    Raises:
+        ValueError: If there are none, or if the kitchen refuses one.
+    """
+    if not decisions:
+        raise ValueError("A demonstration has at least one decision.")
     kitchen = Kitchen(session.dishes)
     observer = Observer(kitchen, session.generator("order"), None)
     view = KitchenView(kitchen)
-    observations, flats, chosen, rewards = [], [], [], []
-    for instance in expert_trajectory(session).decisions:
+    observations, flats, rewards = [], [], []
+    chosen: list[int] = []
+    for instance in decisions:
+        if refusal := kitchen.refusal(instance):
+            raise ValueError(f"The kitchen refuses decision {len(chosen) + 1}: {refusal}")
         observation = observer.observe()
         observations.append(observation)
         flats.append(observer.flat(observation))
@@ -65,7 +84,7 @@ def demonstrate(session: Session) -> Demonstration:
         chosen_index=np.array(chosen, dtype=np.int64),
         reward=np.array(rewards, dtype=np.float32),
         done=last,
-        success=last,
+        success=last & kitchen.finished,
         preference=session.label,
         task=session.preference.in_words,
     )
@@ -73,18 +92,34 @@ def demonstrate(session: Session) -> Demonstration:
 
 @lru_cache(maxsize=1024)
 def prompt_of(session: Session) -> np.ndarray:
-    """A session's demonstration as a prompt.
+    """A session's demonstration by the expert as a prompt, see `as_prompt`."""
+    return as_prompt(demonstrate(session))
+
+
+def as_prompt(demonstration: Demonstration) -> np.ndarray:
+    """A demonstration as a prompt.
 
     Returns:
         The sets of all its decisions, one below the other and padded, with a last column that marks
         the chosen rows, (P, 14) float32, read-only.
+
+    Raises:
+        ValueError: If it has more rows than a prompt.
     """
-    demonstration = demonstrate(session)
-    sets = []
-    for padded, chosen in zip(demonstration.instances, demonstration.chosen_index, strict=True):
+    return marked_prompt(demonstration.instances, demonstration.chosen_index)
+
+
+def marked_prompt(sets: np.ndarray, chosen: np.ndarray) -> np.ndarray:
+    """A prompt of padded sets, (T, N, 13) or flat, and of their chosen rows, (T,); see `as_prompt`.
+
+    Raises:
+        ValueError: If they have more rows than a prompt.
+    """
+    parts = []
+    for padded, choice in zip(sets, chosen, strict=True):
         rows = instances.unpad(padded)  # (n, 13)
-        mark = np.arange(len(rows)) == chosen
-        sets.append(np.column_stack([rows, mark]))
-    prompt = instances.pack(np.concatenate(sets), instances.PROMPT_CAPACITY)
+        mark = np.arange(len(rows)) == choice
+        parts.append(np.column_stack([rows, mark]))
+    prompt = instances.pack(np.concatenate(parts), instances.PROMPT_CAPACITY)
     prompt.flags.writeable = False
     return prompt

@@ -10,6 +10,7 @@ from gymnasium.error import ResetNeeded
 from kitchen_prefs import instances
 from kitchen_prefs.envs.demonstrations import prompt_of
 from kitchen_prefs.envs.episode_simulator import EpisodeSimulator
+from kitchen_prefs.envs.given_prompt import GivenPrompt
 from kitchen_prefs.envs.rewards import reward
 from kitchen_prefs.envs.session_choice import choose_session
 from kitchen_prefs.envs.spaces import action_space, observation_space
@@ -64,6 +65,7 @@ class DishwasherLoading(gymnasium.Env):
         prompts: The number n of demonstrations in a prompt.
         task_id: The label of the preference whose sessions alone are simulated, as `Split.tasks`
             has them; None for all sessions of the split.
+        given: A prompt instead of the benchmark's; then every user has its preference.
         flat: Whether `instances` is flat, (936,), as LeRobot's data sets have it.
         render_mode: None or "rgb_array".
 
@@ -82,6 +84,7 @@ class DishwasherLoading(gymnasium.Env):
         prompt_of: str = "same",
         prompts: int = 1,
         task_id: int | None = None,
+        given: GivenPrompt | None = None,
         flat: bool = False,
         render_mode: str | None = None,
     ) -> None:
@@ -92,6 +95,7 @@ class DishwasherLoading(gymnasium.Env):
         self.track = track
         self.prompt_of = prompt_of
         self.prompts = prompts
+        self.given = given
         self.render_mode = render_mode
         self.action_space = action_space()
         self.observation_space = observation_space(track, prompts, flat)
@@ -121,10 +125,10 @@ class DishwasherLoading(gymnasium.Env):
         """
         super().reset(seed=seed)
         index, salt = choose_session(self._sessions, seed, options or {}, lambda: self.np_random)
-        session = make_session(self.split.name, index, salt)
+        preference = self.given.preference if self.given else None
+        session = make_session(self.split.name, index, salt, preference)
         self._simulator = EpisodeSimulator(session)
-        sources = prompt_sessions(session, self.prompt_of, self.prompts)
-        self._prompt = np.concatenate([prompt_of(source) for source in sources])
+        self._prompt = self.given.rows if self.given else self._prompt_for(session)
         return self._observe(), self._info("", 0.0)
 
     def step(
@@ -196,6 +200,10 @@ class DishwasherLoading(gymnasium.Env):
     def scene(self, opened: bool = False) -> SceneState:
         """What a renderer draws; `opened` shows the load whatever is closed."""
         return scene_of(self.simulator.kitchen, opened)
+
+    def _prompt_for(self, session: Session) -> np.ndarray:
+        sources = prompt_sessions(session, self.prompt_of, self.prompts)
+        return np.concatenate([prompt_of(source) for source in sources])
 
     def _observe(self) -> dict[str, np.ndarray]:
         observation = self.simulator.observation

@@ -13,6 +13,7 @@ import typer
 from rich.console import Console
 from rich.table import Table
 
+from kitchen_prefs.datasets.prompt_reading import read_prompt
 from kitchen_prefs.evaluation.policy_options import (
     ANY_SETTING,
     PolicyPath,
@@ -56,6 +57,13 @@ def evaluate(
     prompts: Annotated[
         int, typer.Option(help="How many demonstrations prompt an episode.", min=1)
     ] = 1,
+    prompt: Annotated[
+        str | None,
+        typer.Option(
+            help="A demonstration that prompts every episode, NAME or NAME:EPISODE of a data set.",
+            show_default="the benchmark's prompts",
+        ),
+    ] = None,
     batch_size: BatchSize = 16,
     prompt_use: Annotated[
         bool, typer.Option("--prompt-use", help="Also roll out with another preference's prompt.")
@@ -82,9 +90,17 @@ def evaluate(
     A policy that needs no training:
     kitchen-prefs evaluate --split=seen --out=outputs/symbolic
     --policy.type=rules --policy.rule=symbolic
+
+    With --prompt every user of the split has the preference that the demonstration follows, which
+    its data set has as a label, and the expert of that preference is the yardstick:
+    kitchen-prefs evaluate --split=seen --out=outputs/mine --prompt=my_kitchen:0
+    --policy.path=policies/checkpoints/ttp_plus
     """
     names = _names(split)
     settings = settings_of(context.args)
+    if prompt and (prompt_use or prompts > 1):
+        raise ValueError("--prompt gives the only prompt; leave out --prompts and --prompt-use.")
+    given = read_prompt(prompt) if prompt else None
     make_folder(out, "--out")
     from kitchen_prefs.evaluation.evaluator import Evaluator
     from kitchen_prefs.evaluation.policy_loading import load_policy
@@ -95,7 +111,7 @@ def evaluate(
             policy = stack.enter_context(_isolated(path, policy_type, settings, track, out))
         else:
             policy = load_policy(path, policy_type, settings, track=track)
-        evaluator = Evaluator(policy, out, salt, prompts, batch_size)
+        evaluator = Evaluator(policy, out, salt, prompts, given, batch_size)
         summaries = []
         for name in names:
             with at_work_alone(out / name):
@@ -156,7 +172,8 @@ def _print_summary(summary: "Summary") -> None:
         metrics.add_row(name, f"{interval.mean:.3f}", f"{interval.low:.3f} to {interval.high:.3f}")
     console.print(metrics)
     console.print(f"Success with its Wilson interval is {summary.wilson_success}.")
-    if references := reference_scores().get(summary.split):
+    references = reference_scores().get(summary.split)
+    if references and "Rescaled" in summary.metrics:
         console.print(
             f"Rescaled is 0 at the Score {references['floor']:.3f} (the rule promptless) and 1 at "
             f"{references['ceiling']:.3f} (the rule bayes)."

@@ -28,6 +28,7 @@ class EvaluationConditions:
         salt: The session seed; 0 is the published one.
         data_version: The version of the sessions.
         package_version: The version of this package.
+        given_prompt: The hash of a prompt that was given; None for the benchmark's prompts.
     """
 
     policy: str
@@ -39,6 +40,7 @@ class EvaluationConditions:
     salt: int
     data_version: int
     package_version: str
+    given_prompt: str | None = None
 
 
 class EpisodeFile:

@@ -6,6 +6,7 @@ from functools import cached_property
 from importlib.metadata import version
 from pathlib import Path
 
+from kitchen_prefs.envs.given_prompt import GivenPrompt
 from kitchen_prefs.evaluation.episode_files import EpisodeFile, EvaluationConditions
 from kitchen_prefs.evaluation.isolation.isolated_policy import IsolatedPolicy
 from kitchen_prefs.evaluation.policy_loading import LoadedPolicy
@@ -55,6 +56,7 @@ class Evaluator:
         folder: Holds <split>.jsonl, one line per episode, and <split>.json, the summary.
         salt: The session seed; 0 is the published one.
         prompts: How many demonstrations prompt an episode.
+        given: A prompt instead of the benchmark's; then every user has its preference.
         batch_size: How many sessions are rolled out at once.
     """
 
@@ -62,6 +64,7 @@ class Evaluator:
     folder: Path
     salt: int = 0
     prompts: int = 1
+    given: GivenPrompt | None = None
     batch_size: int = BATCH_SIZE
 
     def evaluate(
@@ -76,10 +79,10 @@ class Evaluator:
 
         Raises:
             ValueError: If the folder holds episodes of another policy, track, session seed (salt),
-                number of prompts or version.
+                prompt, number of prompts or version.
         """
         episodes = self.episodes(split)
-        metrics = summarise_all(episodes)
+        metrics = self._comparable(summarise_all(episodes))
         if with_prompt_use:
             metrics["Prompt use"] = prompt_use(episodes, self.episodes(split, prompt_of="other"))
         if with_category_accuracy:
@@ -96,7 +99,7 @@ class Evaluator:
 
     def mean_of_splits(self, splits: Sequence[str]) -> dict[str, Interval]:
         """Each metric's mean over splits, each of which counts the same."""
-        return mean_of_splits_all([self.episodes(split) for split in splits])
+        return self._comparable(mean_of_splits_all([self.episodes(split) for split in splits]))
 
     def episodes(
         self, split: str, *, prompt_of: str = "same", expert_states: bool = False
@@ -109,10 +112,16 @@ class Evaluator:
             track=self.loaded_policy.track,
             prompt_of=prompt_of,
             prompts=self.prompts,
+            given=self.given,
             expert_states=expert_states,
             batch_size=self.batch_size,
             file=self.file(split, prompt_of=prompt_of, expert_states=expert_states),
         )
+
+    def _comparable(self, metrics: dict[str, Interval]) -> dict[str, Interval]:
+        """With other users than the split's, leave out what is rescaled by floor and ceiling."""
+        left_out = {"Rescaled"} if self.given else set()
+        return {name: value for name, value in metrics.items() if name not in left_out}
 
     @cached_property
     def _fingerprint(self) -> str:
@@ -130,6 +139,7 @@ class Evaluator:
             salt=self.salt,
             data_version=DATA_VERSION,
             package_version=version("lerobot_policy_kitchen_prefs"),
+            given_prompt=self.given.digest if self.given else None,
         )
 
     def file(

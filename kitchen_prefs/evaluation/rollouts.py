@@ -10,6 +10,7 @@ import torch
 from tqdm import tqdm
 
 from kitchen_prefs.envs.environment import DishwasherLoading
+from kitchen_prefs.envs.given_prompt import GivenPrompt
 from kitchen_prefs.evaluation.episode_files import EpisodeFile
 from kitchen_prefs.metrics import Episode
 from kitchen_prefs.simulation.kitchen import decision_kind
@@ -37,6 +38,7 @@ def roll_out(
     track: str = "standard",
     prompt_of: str = "same",
     prompts: int = 1,
+    given: GivenPrompt | None = None,
     expert_states: bool = False,
     batch_size: int = BATCH_SIZE,
     file: EpisodeFile | None = None,
@@ -52,6 +54,7 @@ def roll_out(
         track: The track of the environment.
         prompt_of: "same", or "other" for a prompt of another preference.
         prompts: How many demonstrations prompt an episode.
+        given: A prompt instead of the benchmark's; then every user has its preference.
         expert_states: Carry out the expert's decisions and record what the policy would have
             chosen, see `metrics.category_accuracy`.
         batch_size: How many sessions are rolled out at once. The episodes of a deterministic
@@ -72,7 +75,7 @@ def roll_out(
     episodes = {e.session: e for e in file.episodes} if file else {}
     missing = [session for session in wanted if session not in episodes]
     environments = [
-        DishwasherLoading(split, track, prompt_of, prompts)
+        DishwasherLoading(split, track, prompt_of, prompts, given=given)
         for _ in range(min(batch_size, len(missing)))
     ]
     name, done = file.path.stem if file else split, len(wanted) - len(missing)

@@ -156,7 +156,8 @@ def _resample(
 
     The twelve preferences are fixed, so an interval covers other sessions of the same preferences.
     Those of many_preferences are a sample of all preferences. A preference with a single session
-    cannot be resampled within, so then the preferences are resampled instead.
+    cannot be resampled within, so then the preferences are resampled instead. Of a single one, as
+    that of a given prompt, the sessions are resampled.
 
     Returns:
         The means of the resampled values, (RESAMPLES,).
@@ -168,7 +169,8 @@ def _resample(
         of_preference.setdefault(episode.preference, []).append(value)
     groups = [np.array(group, dtype=float) for group in of_preference.values()]
 
-    if episodes[0].split == "many_preferences" or min(map(len, groups)) == 1:
+    of_a_sample = episodes[0].split == "many_preferences" or min(map(len, groups)) == 1
+    if of_a_sample and len(groups) > 1:
         return _resample_groups(groups, generator)
     return _resample_within(groups, generator)
 

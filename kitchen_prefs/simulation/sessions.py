@@ -78,13 +78,17 @@ def _generator(split: str, salt: int, index: int, purpose: str) -> np.random.Gen
 
 
 @lru_cache(maxsize=4096)
-def make_session(split: str, index: int, salt: int = 0) -> Session:
+def make_session(
+    split: str, index: int, salt: int = 0, preference: Preference | None = None
+) -> Session:
     """Make one session.
 
     Args:
         split: A split's name.
         index: 0 <= index < the split's size.
         salt: The session seed; 0 gives the published session.
+        preference: What the user prefers instead, so that the dishes are drawn for that; None for
+            what the split's user prefers.
 
     Returns:
         The session, the same in every process.
@@ -98,7 +102,7 @@ def make_session(split: str, index: int, salt: int = 0) -> Session:
     if salt < 0:
         raise ValueError(f"A salt is a natural number, not {salt}.")
     user = where.users[index]
-    preference = _preference_of(user, salt)
+    preference = preference or _preference_of(user, salt)
     generator = _generator(split, salt, index, "dishes")
     without = _left_out(user, index) if where.incomplete else None
     while True:

@@ -2,7 +2,6 @@
 
 submission_format   the files of a submission, as pydantic models
 plugin_identity     which code a policy from elsewhere has
-visible_text        names and links of strangers
 submission_reading  reads a submission, whose files are untrusted
 submission_writing  writes a submission from a policy's episodes
 recording_reading   reads what lerobot-eval recorded

@@ -19,10 +19,10 @@ from kitchen_prefs.metrics import (
     summarise_all,
 )
 from kitchen_prefs.splits import DATA_VERSION, TEST_SPLITS
+from kitchen_prefs.utils.visible_text import alike_key
 from kitchen_prefs_leaderboard.replay import replay_split
 from kitchen_prefs_leaderboard.submission_format import Submission
 from kitchen_prefs_leaderboard.submission_reading import SubmissionFiles, read_submission
-from kitchen_prefs_leaderboard.visible_text import alike_key
 
 MEAN = "mean"  # used like a split's name, for the mean in which each split counts the same
 

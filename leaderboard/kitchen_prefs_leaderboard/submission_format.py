@@ -10,18 +10,12 @@ FOLDER/
 from importlib.metadata import version
 from typing import Annotated, Literal, get_args
 
-from pydantic import (
-    AfterValidator,
-    BaseModel,
-    ConfigDict,
-    Field,
-    StringConstraints,
-    ValidationError,
-)
+from pydantic import AfterValidator, Field, StringConstraints
 
 from kitchen_prefs.envs.environment import MAX_EPISODE_STEPS
 from kitchen_prefs.splits import TEST_SPLITS
-from kitchen_prefs_leaderboard.visible_text import check_public_link, check_visible
+from kitchen_prefs.utils.untrusted_files import Strict
+from kitchen_prefs.utils.visible_text import check_public_link, check_visible
 
 FORMAT = 1  # the version of this format
 DESCRIPTION = "submission.json"
@@ -51,12 +45,6 @@ Hash = Annotated[str, StringConstraints(pattern=r"^[0-9a-f]{64}$")]  # SHA-256, 
 FARTHEST = 1000
 Number = Annotated[float, Field(ge=-FARTHEST, le=FARTHEST)]
 Pose = tuple[Number, Number, Number, Number, Number, Number, Number]
-
-
-class Strict(BaseModel):
-    """A model without extra fields, type conversion or infinite numbers."""
-
-    model_config = ConfigDict(strict=True, extra="forbid", frozen=True, allow_inf_nan=False)
 
 
 class Plugin(Strict):
@@ -134,15 +122,6 @@ class Line(Strict):
     first: Hash
     actions: Annotated[list[Pose], Field(min_length=1, max_length=MAX_EPISODE_STEPS)]
     last: Hash
-
-
-def complaint(error: ValidationError) -> str:
-    """The first validation error, in a few printable words."""
-    first = error.errors(include_url=False, include_input=False)[0]
-    at = ".".join(str(step)[:40] for step in first["loc"][:6])
-    words = f"{f'{at}: ' if at else ''}{first['msg'][:200]}."
-    # The name of an extra field is untrusted.
-    return "".join(character if character.isprintable() else "?" for character in words)
 
 
 def installed_packages() -> dict[str, str]:

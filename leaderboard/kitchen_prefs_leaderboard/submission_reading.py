@@ -4,24 +4,19 @@ No link is followed, nothing is read beyond its size limit, nothing is executed,
 sentence.
 """
 
-import errno
 import hashlib
-import os
-import stat
 from bz2 import BZ2Decompressor
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from pydantic import BaseModel, ValidationError
-
 from kitchen_prefs.splits import get_split
+from kitchen_prefs.utils.untrusted_files import parse, read_bytes
 from kitchen_prefs_leaderboard.submission_format import (
     ACTIONS,
     DESCRIPTION,
     Line,
     Submission,
-    complaint,
 )
 
 MOST_DESCRIPTION = 64 * 1024  # bytes; ours have some 2,000
@@ -90,7 +85,7 @@ def parse_description(content: bytes, file: Path) -> Submission:
     Raises:
         ValueError: If it is no `Submission`; the message names the file.
     """
-    return _parse(Submission, content, str(file))
+    return parse(Submission, content, str(file))
 
 
 def parse_lines(content: bytes, split: str, file: Path) -> list[Line]:
@@ -116,31 +111,6 @@ def parse_lines(content: bytes, split: str, file: Path) -> list[Line]:
     return lines
 
 
-def read_bytes(file: Path, most: int) -> bytes:
-    """Read a regular file of at most so many bytes.
-
-    Raises:
-        ValueError: If it is missing, larger, or not a regular file.
-    """
-    try:
-        with open(file, "rb", opener=_open) as opened:
-            if not stat.S_ISREG(os.fstat(opened.fileno()).st_mode):
-                raise ValueError(f"{file} is not a regular file.")
-            content = opened.read(most + 1)
-    except OSError as error:
-        if error.errno == errno.ELOOP:
-            raise ValueError(f"{file} is a link; a submission holds files.") from error
-        raise ValueError(f"{file} cannot be read: {error.strerror}.") from error
-    if len(content) > most:
-        raise ValueError(f"{file} is larger than {most:,} bytes.")
-    return content
-
-
-def _open(file: str, flags: int) -> int:
-    """A link is not followed; a pipe is not waited for."""
-    return os.open(file, flags | os.O_NOFOLLOW | os.O_NONBLOCK)
-
-
 def _decompress(content: bytes, file: Path) -> bytes:
     stream = BZ2Decompressor()
     try:
@@ -157,11 +127,4 @@ def _decompress(content: bytes, file: Path) -> bytes:
 def _line(content: bytes, where: str) -> Line:
     if len(content) > MOST_LINE:
         raise ValueError(f"{where} is longer than {MOST_LINE:,} bytes.")
-    return _parse(Line, content, where)
-
-
-def _parse[Model: BaseModel](model: type[Model], content: bytes, where: str) -> Model:
-    try:
-        return model.model_validate_json(content)
-    except ValidationError as error:
-        raise ValueError(f"{where} does not follow the format: {complaint(error)}") from error
+    return parse(Line, content, where)

@@ -17,6 +17,7 @@ from kitchen_prefs.evaluation.policy_loading import LoadedPolicy
 from kitchen_prefs.metrics import Episode
 from kitchen_prefs.splits import DATA_VERSION, TEST_SPLITS
 from kitchen_prefs.utils.files import atomic_folder
+from kitchen_prefs.utils.untrusted_files import complaint
 from kitchen_prefs_leaderboard.plugin_identity import find_plugin
 from kitchen_prefs_leaderboard.replay import to_jsonl, write_line
 from kitchen_prefs_leaderboard.submission_format import (
@@ -26,7 +27,6 @@ from kitchen_prefs_leaderboard.submission_format import (
     UNSPECIFIED,
     Policy,
     Submission,
-    complaint,
     installed_packages,
 )
 

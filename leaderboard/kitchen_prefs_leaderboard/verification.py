@@ -12,12 +12,12 @@ from typing import Annotated, Literal
 from pydantic import Field, ValidationError
 
 from kitchen_prefs.utils.files import write_json
+from kitchen_prefs.utils.untrusted_files import Strict
 from kitchen_prefs_leaderboard.submission_format import (
     Hash,
     Name,
     Plugin,
     Policy,
-    Strict,
     Submission,
 )
 

@@ -19,13 +19,13 @@ import atheris
 from honest import ABOUT, EPISODE
 
 with atheris.instrument_imports(include=["kitchen_prefs_leaderboard"]):
+    from kitchen_prefs.utils.untrusted_files import read_bytes
     from kitchen_prefs_leaderboard.submission_format import ACTIONS, DESCRIPTION, Line, Submission
     from kitchen_prefs_leaderboard.submission_reading import (
         MOST_COMPRESSED,
         MOST_DESCRIPTION,
         parse_description,
         parse_lines,
-        read_bytes,
     )
 
 from kitchen_prefs.splits import get_split

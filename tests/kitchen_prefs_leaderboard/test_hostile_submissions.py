@@ -19,6 +19,7 @@ from rich.console import Console
 from kitchen_prefs.envs.episode_simulator import EpisodeSimulator
 from kitchen_prefs.simulation.sessions import make_session
 from kitchen_prefs.splits import TEST_SPLITS, get_split
+from kitchen_prefs.utils.untrusted_files import read_bytes
 from kitchen_prefs_leaderboard import scoring
 from kitchen_prefs_leaderboard.page.building import to_html
 from kitchen_prefs_leaderboard.replay import replay
@@ -32,7 +33,6 @@ from kitchen_prefs_leaderboard.submission_reading import (
     MOST_LINES,
     parse_description,
     parse_lines,
-    read_bytes,
 )
 from kitchen_prefs_leaderboard.verification import read_verifications
 
@@ -281,8 +281,8 @@ def test_files_that_hold_no_lines(folder, content, message):
     ("exchange", "message"),
     [
         (lambda file: None, "cannot be read: No such file"),
-        (lambda file: file.symlink_to("/dev/zero"), "is a link; a submission holds files"),
-        (lambda file: file.symlink_to("nowhere"), "is a link; a submission holds files"),
+        (lambda file: file.symlink_to("/dev/zero"), "is a link; give the file itself"),
+        (lambda file: file.symlink_to("nowhere"), "is a link; give the file itself"),
         (lambda file: file.mkdir(), "cannot be read: Is a directory"),
         (os.mkfifo, "is not a regular file"),
     ],

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from kitchen_prefs_leaderboard.visible_text import alike_key, check_public_link, check_visible
+from kitchen_prefs.utils.visible_text import alike_key, check_public_link, check_visible
 
 
 @pytest.mark.parametrize(

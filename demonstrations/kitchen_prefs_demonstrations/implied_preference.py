@@ -1,0 +1,66 @@
+"""Which of the 2 x 7! preferences a demonstration follows, if any."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from kitchen_prefs.preferences import CATEGORIES, Preference
+from kitchen_prefs.simulation.expert import KitchenView, choose
+from kitchen_prefs.simulation.kitchen import FIRST_DISH, Kitchen, decision_kind
+from kitchen_prefs_demonstrations.replaying import ReplayedDemonstration
+
+# Two slips among the 24 or 28 picks and places of a demonstration leave .92 or .93.
+LEAST_SHARE = 0.9
+
+
+@dataclass(frozen=True)
+class ImpliedPreference:
+    """The preference that the rule `symbolic` reads from a demonstration.
+
+    Attributes:
+        preference: The preference.
+        share: The share of picks and places that are of the kind that its expert chooses there.
+        unseen: The categories of which no dish stands in a rack: their rack is a guess.
+    """
+
+    preference: Preference
+    share: float
+    unseen: tuple[str, ...]
+
+    @property
+    def is_followed(self) -> bool:
+        """Whether the demonstration shows every category and follows the preference."""
+        return not self.unseen and self.share >= LEAST_SHARE
+
+    @property
+    def why_not(self) -> str:
+        """Why it is not followed, in a few words; empty if it is."""
+        if self.unseen:
+            return f"no {' and no '.join(self.unseen)} stands in a rack"
+        if not self.is_followed:
+            return f"{self.share:.0%} of its picks and places follow one"
+        return ""
+
+
+def implied_preference(demonstration: ReplayedDemonstration) -> ImpliedPreference:
+    """Read the preference of a demonstration."""
+    from lerobot_policy_kitchen_prefs.rules.preference_inference import symbolic_preference
+
+    preference = symbolic_preference(demonstration.prompt)
+    kitchen = demonstration.kitchen
+    shown = np.unique(kitchen.dishes.category[kitchen.placement >= 0])
+    unseen = tuple(name for i, name in enumerate(CATEGORIES) if i not in shown)
+    return ImpliedPreference(preference, _share(demonstration, preference), unseen)
+
+
+def _share(demonstration: ReplayedDemonstration, preference: Preference) -> float:
+    dishes = demonstration.session.dishes
+    kitchen = Kitchen(dishes)
+    view = KitchenView(kitchen)
+    same = []
+    for instance in demonstration.decisions:
+        if instance >= FIRST_DISH:
+            kind = decision_kind(choose(view, preference), dishes)
+            same.append(kind == decision_kind(instance, dishes))
+        kitchen.decide(instance)
+    return float(np.mean(same))

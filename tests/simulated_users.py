@@ -1,0 +1,62 @@
+"""Users who load by a preference, and slip at a known rate."""
+
+import numpy as np
+
+from kitchen_prefs.preferences import SPACE_SIZE, preference_from_number
+from kitchen_prefs.simulation.expert import KitchenView, choose
+from kitchen_prefs.simulation.kitchen import SINK, Kitchen
+from kitchen_prefs_demonstrations.file_format import DemonstrationFile
+from kitchen_prefs_demonstrations.kitchens import study_session
+from kitchen_prefs_demonstrations.replaying import replay
+
+
+def preference_of(number):
+    """The preference of a user, drawn at random from all 2 x 7!."""
+    return preference_from_number(int(np.random.default_rng(number).integers(SPACE_SIZE)))
+
+
+def slipping(session, preference, rate, seed):
+    """The decisions of a user who puts each dish into the sink at a rate, by mistake."""
+    generator = np.random.default_rng(seed)
+    kitchen = Kitchen(session.dishes)
+    view = KitchenView(kitchen)
+    decisions = []
+    while not kitchen.finished:
+        instance = choose(view, preference)
+        if kitchen.held is not None and generator.random() < rate:
+            instance = SINK
+        decisions.append(instance)
+        kitchen.decide(instance)
+    return decisions
+
+
+def demonstrated(decisions, user, day, session=None):
+    """Decisions as a replayed demonstration of a study."""
+    session = session or study_session()
+    file = DemonstrationFile(
+        format=1,
+        data_version=1,
+        split=session.split,
+        session=session.index,
+        salt=session.salt,
+        decisions=decisions,
+        study={"name": "test", "participant": f"p{user}", "day": day},
+    )
+    return replay(file, f"p{user}")
+
+
+def study_of(users, rate):
+    """Every user twice, in the study's kitchen."""
+    session = study_session()
+    return [
+        demonstrated(
+            slipping(session, preference_of(user), rate, [user, day, round(rate * 1000)]), user, day
+        )
+        for user in range(users)
+        for day in (1, 2)
+    ]
+
+
+def dishes_of(session):
+    """How many dishes of each category a session has."""
+    return np.bincount(session.dishes.category)
