@@ -15,6 +15,7 @@ from PIL import Image
 from kitchen_prefs.rendering.meshes import Surface
 
 FLOAT, BYTE, UNSIGNED_SHORT = 5126, 5120, 5123  # the format's numbers of component types
+VERTICES, FACES = 34962, 34963  # and of what a buffer holds
 JSON_CHUNK, BINARY_CHUNK = 0x4E4F534A, 0x004E4942
 JPEG_QUALITY = 82
 
@@ -59,13 +60,13 @@ class GlbWriter:
         primitives = []
         for material, surface in parts.items():
             attributes = {
-                "POSITION": self._accessor(surface.vertices.astype(np.float32), FLOAT, True),
-                "NORMAL": self._accessor(_quantised(_normals(surface)), BYTE),
+                "POSITION": self._vertices(surface.vertices.astype(np.float32)),
+                "NORMAL": self._vertices(_quantised(_normals(surface)), normalized=True),
             }
             if surface.texture is not None:
                 flipped = surface.texture * (1, -1)  # glTF counts a picture's rows from above
-                attributes["TEXCOORD_0"] = self._accessor(flipped.astype(np.float32), FLOAT)
-            faces = self._accessor(surface.faces.astype(np.uint16).ravel(), UNSIGNED_SHORT)
+                attributes["TEXCOORD_0"] = self._vertices(flipped.astype(np.float32))
+            faces = self._faces(surface.faces.astype(np.uint16))
             primitives.append({"attributes": attributes, "indices": faces, "material": material})
         return self._add("meshes", {"primitives": primitives})
 
@@ -95,25 +96,31 @@ class GlbWriter:
         self._lists.setdefault(kind, []).append(thing)
         return len(self._lists[kind]) - 1
 
-    def _view(self, content: bytes, stride: int | None = None) -> int:
+    def _vertices(self, values: np.ndarray, **properties: bool) -> int:
+        """Numbers of each vertex, (V, k) float32 or int8."""
+        accessor: dict[str, Any] = {
+            "type": f"VEC{values.shape[1]}",
+            "componentType": BYTE if values.dtype == np.int8 else FLOAT,
+            "count": len(values),
+            "min": values.min(axis=0).tolist(),
+            "max": values.max(axis=0).tolist(),
+        }
+        row = values.shape[1] * values.itemsize
+        filler = -row % 4 // values.itemsize  # a vertex's numbers begin at a whole word
+        content = np.pad(values, ((0, 0), (0, filler))).tobytes()
+        view = self._view(content, byteStride=row + -row % 4, target=VERTICES)
+        return self._add("accessors", accessor | properties | {"bufferView": view})
+
+    def _faces(self, corners: np.ndarray) -> int:
+        """The vertices of each triangle, (F, 3) uint16."""
+        view = self._view(corners.tobytes(), target=FACES)
+        accessor = {"type": "SCALAR", "componentType": UNSIGNED_SHORT, "count": corners.size}
+        return self._add("accessors", accessor | {"bufferView": view})
+
+    def _view(self, content: bytes, **properties: int) -> int:
         view = {"buffer": 0, "byteOffset": len(self._binary), "byteLength": len(content)}
         self._binary += content + b"\0" * (-len(content) % 4)
-        return self._add("bufferViews", view | ({"byteStride": stride} if stride else {}))
-
-    def _accessor(self, values: np.ndarray, component: int, bounds: bool = False) -> int:
-        """Numbers, (n,) or (n, k); vertices are in steps of whole words, as the format asks."""
-        vectors = values.ndim == 2
-        accessor: dict[str, Any] = {"componentType": component, "count": len(values)}
-        if component == BYTE:
-            values = np.pad(values, ((0, 0), (0, 1)))
-            accessor |= {"type": "VEC3", "normalized": True}
-        else:
-            accessor["type"] = f"VEC{values.shape[1]}" if vectors else "SCALAR"
-        if bounds:
-            accessor |= {"min": values.min(0).tolist(), "max": values.max(0).tolist()}
-        stride = values.strides[0] if vectors else None
-        content = np.ascontiguousarray(values).tobytes()
-        return self._add("accessors", accessor | {"bufferView": self._view(content, stride)})
+        return self._add("bufferViews", view | properties)
 
 
 def _normals(surface: Surface) -> np.ndarray:

@@ -28,7 +28,7 @@ from kitchen_prefs_demonstrations.page.kitchen_gltf import (
 
 CHROMIUM = Path("/usr/bin/chromium")
 PATIENCE = 120_000  # milliseconds; the machine may be busy
-SCREEN = {"width": 560, "height": 400}
+SCREEN = {"width": 440, "height": 340}
 SMALL_ENOUGH = 2_000_000  # bytes of everything that the third dimension adds to the page
 SESSION = make_session("seen", 5)  # nine dishes at the start, two cups among them
 PRESENT = [CATEGORIES[index] for index in SESSION.dishes.category[: SESSION.dishes.present]]
@@ -131,6 +131,9 @@ def test_everything_lies_within_the_file(content, glb):
     binary = glb[28 + struct.unpack_from("<I", glb, 12)[0] :]
     views = content["bufferViews"]
     assert all(view["byteOffset"] + view["byteLength"] <= len(binary) for view in views)
+    for accessor in content["accessors"]:
+        view = views[accessor["bufferView"]]
+        assert accessor["count"] * view.get("byteStride", 2) == view["byteLength"]
     assert len(glb) == struct.unpack_from("<I", glb, 8)[0]
     for image in content["images"]:
         view = views[image["bufferView"]]
@@ -323,6 +326,21 @@ def test_an_orbit_chooses_nothing_and_stays_before_the_kitchen(page, begin):
     assert chosen(page) == []
     assert x < -2
     assert y < 0 < z
+
+
+def test_a_zoom_needs_ctrl_and_ends_before_the_cabinets(page, begin):
+    begin([])
+    page.mouse.move(*where(page, "view.dishes[0]"))
+    far = page.evaluate("view.stage.controls.getDistance()")
+    page.mouse.wheel(0, -500)
+    assert page.evaluate("view.stage.controls.getDistance()") == far
+    page.keyboard.down("Control")
+    page.mouse.wheel(0, -5000)
+    page.keyboard.up("Control")
+    page.wait_for_function(f"view.stage.controls.getDistance() < {far / 2}")
+    _, y, z = page.evaluate("view.stage.camera.position.toArray()")
+    assert y < -0.2
+    assert z > 0
 
 
 def test_it_draws_only_when_something_changes(page, begin):

@@ -141,13 +141,13 @@ class Kitchen3D {
       canvas.addEventListener(name, listener, { signal: this.listening.signal });
     let pressed = null;
     on("pointerdown", (event) => {
-      pressed = event.isPrimary ? positionOf(event) : null;
+      pressed = event.isPrimary ? pointOf(event) : null;
     });
-    on("pointermove", (event) => event.buttons === 0 && this.hover(positionOf(event)));
+    on("pointermove", (event) => event.buttons === 0 && this.hover(pointOf(event)));
     on("pointerleave", () => this.hover(null));
     on("pointercancel", () => { pressed = null; });
     on("pointerup", (event) => {
-      const point = positionOf(event);
+      const point = pointOf(event);
       const clicked = pressed && Math.hypot(point.x - pressed.x, point.y - pressed.y) < CLICK;
       pressed = null;
       if (clicked && event.button === 0) this.choose(point);
@@ -182,7 +182,7 @@ class Kitchen3D {
   }
 }
 
-const positionOf = ({ offsetX, offsetY }) => ({ x: offsetX, y: offsetY });
+const pointOf = ({ offsetX, offsetY }) => ({ x: offsetX, y: offsetY });
 
 function turned(axis, angle) {
   const [x, z] = axis === "x" ? [1, 0] : [0, 1];

@@ -40,12 +40,12 @@ async function readKitchen3D(glb) {
     dishes: scenes[1].children, // one of each category
     sink: new THREE.Vector3(...kitchen.userData.sink),
     counter: kitchen.userData.counter,
-    placements: kitchen.userData.placements.map(poseOf),
+    placements: kitchen.userData.placements.map(pose3D),
   };
 }
 
 /** Position and quaternion of seven numbers; the quaternion has w first. */
-function poseOf([x, y, z, w, i, j, k]) {
+function pose3D([x, y, z, w, i, j, k]) {
   return { position: new THREE.Vector3(x, y, z), quaternion: new THREE.Quaternion(i, j, k, w) };
 }
 

@@ -8,7 +8,8 @@ const IN_VIEW = [ // m: the counter's ends, the plants above it and the edge of 
   [-2.42, -0.04, 0], [1.02, -0.04, 0], [-2.42, -0.04, 0.95], [1.02, -0.04, 0.95],
   [-2.42, 0.65, 1.1], [0.22, 0.55, 1.75], [-0.3, -0.76, 0.1], [0.3, -0.76, 0.1],
 ];
-const ORBIT = { azimuth: 1.1, highest: 0.35, lowest: 1.5, nearest: 0.9 }; // radians and m
+const ORBIT = { azimuth: 1.0, highest: 0.35, lowest: 1.5, nearest: 1.0 }; // radians and m
+const LOOK_AT = [[-2.2, -0.4, 0.3], [0.9, 0.1, 1.1]]; // m: the camera turns round a point in here
 const LIGHTS = { // a colour and how bright it is
   light: { wall: "#d7c8b1", sky: ["#ffffff", 2.3], ground: "#cbbca8", sun: ["#fff2de", 1.6] },
   dark: { wall: "#8d7869", sky: ["#b7c2dc", 1.0], ground: "#6a5a4c", sun: ["#ffd2a0", 1.25] },
@@ -66,8 +67,10 @@ class Stage3D {
     controls.maxPolarAngle = ORBIT.lowest;
     controls.minDistance = ORBIT.nearest;
     controls.zoomToCursor = true;
-    controls.maxTargetRadius = 1.4;
-    controls.addEventListener("change", () => this.redraw());
+    controls.addEventListener("change", () => {
+      this.stayNear();
+      this.redraw();
+    });
     this.look();
   }
 
@@ -85,10 +88,18 @@ class Stage3D {
     });
     const distance = 1.04 * Math.max(...distances);
     this.controls.maxDistance = 1.1 * distance;
-    this.controls.cursor.copy(middle);
     this.controls.target.copy(middle);
     this.camera.position.copy(middle).addScaledVector(back, distance);
     this.controls.update();
+  }
+
+  /** Whatever was zoomed to, turn round a point of the kitchen. */
+  stayNear() {
+    const { target } = this.controls;
+    const [low, high] = LOOK_AT.map((corner) => new THREE.Vector3(...corner));
+    const kept = target.clone().clamp(low, high);
+    this.camera.position.add(kept).sub(target);
+    target.copy(kept);
   }
 
   /** Keep to the element's size and to the page's theme. */
