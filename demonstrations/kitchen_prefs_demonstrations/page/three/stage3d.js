@@ -14,12 +14,13 @@ const LIGHTS = { // a colour and how bright it is
   light: { wall: "#d7c8b1", sky: ["#ffffff", 2.3], ground: "#cbbca8", sun: ["#fff2de", 1.6] },
   dark: { wall: "#8d7869", sky: ["#b7c2dc", 1.0], ground: "#6a5a4c", sun: ["#ffd2a0", 1.25] },
 };
+const SUN_FROM = [-2.0, -2.64, 3.2]; // m from the middle: the renderer's window, at the front left
 const SHADOW_SIDE = 2048; // pixels
 const SHADOW_REACH = 2.3; // m around the middle of the kitchen
 const FINEST = 2; // pixels of the canvas for one of the page
 
 class Stage3D {
-  /** `beforeFrame(time)` moves what moves, and tells whether it goes on. */
+  /** `beforeFrame(time)` moves what moves, and tells whether it has moved something. */
   constructor(element, beforeFrame) {
     this.element = element;
     this.beforeFrame = beforeFrame;
@@ -40,18 +41,17 @@ class Stage3D {
     this.sky = new THREE.HemisphereLight();
     this.sky.position.set(0, 0, 1);
     this.sun = new THREE.DirectionalLight();
-    const middle = new THREE.Vector3(-0.7, 0, 0.7);
-    this.sun.target.position.copy(middle);
-    this.sun.position.copy(middle).add(new THREE.Vector3(-2.0, -2.64, 3.2));
+    this.sun.target.position.set(...VIEW_MIDDLE);
+    this.sun.position.set(...SUN_FROM).add(this.sun.target.position);
     const { shadow } = this.sun;
     this.sun.castShadow = true;
     shadow.mapSize.set(SHADOW_SIDE, SHADOW_SIDE);
-    shadow.radius = 3;
-    shadow.normalBias = 0.004;
+    shadow.radius = 3; // pixels of its soft edge
+    shadow.normalBias = 0.004; // m, and a depth: no surface throws a shadow onto itself
     shadow.bias = -0.0004;
     [shadow.camera.left, shadow.camera.right] = [-SHADOW_REACH, SHADOW_REACH];
     [shadow.camera.bottom, shadow.camera.top] = [-SHADOW_REACH, SHADOW_REACH];
-    [shadow.camera.near, shadow.camera.far] = [1.5, 8];
+    [shadow.camera.near, shadow.camera.far] = [1.5, 8]; // m from the sun
     this.scene.add(this.sky, this.sun, this.sun.target);
   }
 
@@ -123,8 +123,7 @@ class Stage3D {
   resize() {
     const { clientWidth: width, clientHeight: height } = this.element;
     if (width === 0 || height === 0) return; // the view is hidden
-    const asBefore = this.width === width && this.height === height;
-    if (asBefore) return;
+    if (this.width === width && this.height === height) return;
     [this.width, this.height] = [width, height];
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, FINEST));
     this.renderer.setSize(width, height);
