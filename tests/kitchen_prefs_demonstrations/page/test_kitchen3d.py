@@ -1,9 +1,7 @@
-"""The kitchen in three dimensions: its file, and what a visitor sees and chooses in a browser."""
+"""What a visitor sees and chooses in the kitchen in three dimensions: Debian's chromium."""
 
 import base64
 import io
-import json
-import struct
 from pathlib import Path
 
 import numpy as np
@@ -14,8 +12,7 @@ from playwright.sync_api import sync_playwright
 from kitchen_prefs.preferences import CATEGORIES
 from kitchen_prefs.rendering.tableware import colour
 from kitchen_prefs.simulation import kitchen as k
-from kitchen_prefs.simulation.layout import EXTENTS, RACK_TRAVEL, SINK_POSITION
-from kitchen_prefs.simulation.placements import load_placements
+from kitchen_prefs.simulation.layout import RACK_TRAVEL, SINK_POSITION
 from kitchen_prefs.simulation.sessions import make_session
 from kitchen_prefs.web.kitchen_data import layout_data, session_data
 from kitchen_prefs.web.page import SHARED, joined, self_contained_page
@@ -29,7 +26,6 @@ from kitchen_prefs_demonstrations.page.kitchen_gltf import (
 CHROMIUM = Path("/usr/bin/chromium")
 PATIENCE = 120_000  # milliseconds; the machine may be busy
 SCREEN = {"width": 440, "height": 340}
-SMALL_ENOUGH = 2_000_000  # bytes of everything that the third dimension adds to the page
 SESSION = make_session("seen", 5)  # nine dishes at the start, two cups among them
 PRESENT = [CATEGORIES[index] for index in SESSION.dishes.category[: SESSION.dishes.present]]
 FIRST_OF = {category: PRESENT.index(category) for category in sorted(set(PRESENT))}
@@ -40,50 +36,7 @@ TEMPLATE = """<!doctype html><html lang="en"><head><title>Kitchen</title>
 <meta http-equiv="Content-Security-Policy" content="$policy"><style>$style</style></head>
 <body><div id="kitchen"></div><p id="said"></p>
 <script type="application/json" id="data">$data</script><script>$script</script></body></html>"""
-# As the page's own script will use the view.
-EXAMPLE = """
-const session = data.session;
-const chosen = [];
-let state = kitchenAtStart(session);
-const view = new Kitchen3D(byId("kitchen"), bytesOf(data.glb).buffer, data.layout, {
-  onChoose(instance) {
-    chosen.push(instance);
-    byId("said").textContent = decide(state, instance);
-    show();
-  },
-  describe: (instance) => `instance ${instance}`,
-});
-function show() {
-  const places = placementsInHand(state);
-  const number = (k) => FIRST_PLACEMENT[state.out] + k;
-  view.show(state, session, {
-    free: places.filter((k) => !isBlocked(state, state.out, k)).map(number),
-    blocked: places.filter((k) => isBlocked(state, state.out, k)).map(number),
-  });
-}
-/** Another visit: a new kitchen after some decisions. */
-function begin(decisions) {
-  state = kitchenAtStart(session);
-  chosen.length = 0;
-  decisions.forEach((instance) => decide(state, instance));
-  view.session = null;
-  view.stage.look();
-  show();
-}
-const frame = () => new Promise(requestAnimationFrame);
-async function drawn() {
-  do await frame(); while (view.stage.frame !== null);
-}
-/** Where a point of an object's own frame is on the screen. */
-function onScreen(object, ...point) {
-  view.stage.scene.updateMatrixWorld();
-  view.stage.camera.updateMatrixWorld();
-  const { x, y } = object.localToWorld(new THREE.Vector3(...point)).project(view.stage.camera);
-  const { left, top, width, height } = view.stage.canvas.getBoundingClientRect();
-  return [left + ((x + 1) * width) / 2, top + ((1 - y) * height) / 2];
-}
-show();
-"""
+EXAMPLE = Path(__file__).with_name("kitchen3d_example.js")
 
 pytestmark = [
     pytest.mark.xdist_group("kitchen3d"),
@@ -94,74 +47,18 @@ pytestmark = [
 
 
 @pytest.fixture(scope="module")
-def glb():
-    """The kitchen's file."""
-    return kitchen_glb()
-
-
-@pytest.fixture(scope="module")
-def content(glb):
-    """What the file says of itself."""
-    length = struct.unpack_from("<I", glb, 12)[0]
-    return json.loads(glb[20 : 20 + length])
-
-
-def node(content, name):
-    return next(one for one in content["nodes"] if one["name"] == name)
-
-
-def test_a_dish_has_its_extents(content):
-    for category in CATEGORIES:
-        (part,) = content["meshes"][node(content, category)["mesh"]]["primitives"]
-        bounds = content["accessors"][part["attributes"]["POSITION"]]
-        size = np.subtract(bounds["max"], bounds["min"])
-        np.testing.assert_allclose(size, EXTENTS[category], atol=0.004)
-
-
-def test_the_file_says_where_dishes_stand_and_what_moves(content):
-    placements = load_placements()
-    poses = np.array(node(content, "kitchen")["extras"]["placements"])
-    np.testing.assert_allclose(poses[:, :3], placements.position, atol=1e-4)
-    np.testing.assert_allclose(poses[:, 3:], placements.quaternion, atol=1e-4)
-    assert node(content, "top")["extras"] == {"travel": RACK_TRAVEL}
-    assert node(content, "cup")["extras"]["colours"][4] == list(colour("cup", 4))
-
-
-def test_everything_lies_within_the_file(content, glb):
-    binary = glb[28 + struct.unpack_from("<I", glb, 12)[0] :]
-    views = content["bufferViews"]
-    assert all(view["byteOffset"] + view["byteLength"] <= len(binary) for view in views)
-    for accessor in content["accessors"]:
-        view = views[accessor["bufferView"]]
-        assert accessor["count"] * view.get("byteStride", 2) == view["byteLength"]
-    assert len(glb) == struct.unpack_from("<I", glb, 8)[0]
-    for image in content["images"]:
-        view = views[image["bufferView"]]
-        start, length = view["byteOffset"], view["byteLength"]
-        assert Image.open(io.BytesIO(binary[start : start + length])).size == (512, 512)
-
-
-def test_the_third_dimension_is_small(glb):
-    scripts = joined(*(THREE_FOLDER / name for name in (*SCRIPTS_3D, STYLE_3D)))
-    assert len(scripts.encode()) + len(base64.b64encode(glb)) < SMALL_ENOUGH
-    assert "</script" not in scripts.lower()
-    assert "<!--" not in scripts
-
-
-@pytest.fixture(scope="module")
-def page(glb, tmp_path_factory):
+def page(tmp_path_factory):
     """A page with the view; at the end the console is empty and nothing was fetched."""
     file = tmp_path_factory.mktemp("page") / "kitchen.html"
     data = {
         "layout": layout_data(),
         "session": session_data(SESSION),
-        "glb": base64.b64encode(glb).decode(),
+        "glb": base64.b64encode(kitchen_glb()).decode(),
     }
-    script = joined(
-        SHARED / "basics.js", SHARED / "kitchen.js", *(THREE_FOLDER / name for name in SCRIPTS_3D)
-    )
+    scripts = [THREE_FOLDER / name for name in SCRIPTS_3D]
+    script = joined(SHARED / "basics.js", SHARED / "kitchen.js", *scripts, EXAMPLE)
     style = joined(SHARED / "house.css", THREE_FOLDER / STYLE_3D)
-    file.write_text(self_contained_page(TEMPLATE, style, script + EXAMPLE, data))
+    file.write_text(self_contained_page(TEMPLATE, style, script, data))
     with sync_playwright() as driver:
         browser = driver.chromium.launch(
             executable_path=str(CHROMIUM),
