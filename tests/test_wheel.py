@@ -19,7 +19,6 @@ PACKAGES = {
     "kitchen_prefs_experiments",
     "kitchen_prefs_leaderboard",
     "kitchen_prefs_robot",
-    "kitchen_prefs_demonstrations",
 }
 MOST_BYTES = 40e6
 

@@ -17,7 +17,7 @@ SHARED = files("kitchen_prefs.web") / "templates"
 # Nothing is fetched, nothing is sent, and only this file's own style and script are used.
 POLICY = (
     "default-src 'none'; style-src {style}; script-src {script}; img-src data:; "
-    "base-uri 'none'; form-action 'none'"
+    "connect-src {connect}; base-uri 'none'; form-action 'none'"
 )
 
 
@@ -26,7 +26,9 @@ def joined(*sources: Traversable) -> str:
     return "\n".join(source.read_text(encoding="utf-8") for source in sources)
 
 
-def self_contained_page(template: str, style: str, script: str, data: Mapping[str, Any]) -> str:
+def self_contained_page(
+    template: str, style: str, script: str, data: Mapping[str, Any], connects: bool = False
+) -> str:
     """The HTML of a page that needs no network.
 
     Args:
@@ -35,12 +37,17 @@ def self_contained_page(template: str, style: str, script: str, data: Mapping[st
         style: The style sheet.
         script: The script, which reads the data from that element (basics.js).
         data: All that the page shows.
+        connects: Whether the page may talk to the program that serves it.
 
     Raises:
         ValueError: If the data hold a number that JSON does not have.
     """
     return Template(template).substitute(
-        policy=POLICY.format(style=_hash(style), script=_hash(script)),
+        policy=POLICY.format(
+            style=_hash(style),
+            script=_hash(script),
+            connect="'self'" if connects else "'none'",
+        ),
         style=style,
         script=script,
         data=_escaped_json(data),

@@ -52,8 +52,13 @@ function spotOf(state, i, sunk) {
     const top = counterY(y + deep / 2) + (Math.floor(sunk / SUNK_ROW) % 3 + 0.5) * cell[1];
     return [left, top, width, depth, 0, SUNK_ZOOM];
   }
-  const [, x, y, a, b, angle] = data.layout.placements[state.placements[i]];
-  return [RACK_LEFT[place] + RACK[0] / 2 + (x / CENTIMETRE) * ZOOM,
+  return spotInRack(place, state.placements[i]);
+}
+
+/** Where a dish at a placement is drawn: x, y, half axes, angle and zoom. */
+function spotInRack(rack, placement) {
+  const [, x, y, a, b, angle] = data.layout.placements[placement];
+  return [RACK_LEFT[rack] + RACK[0] / 2 + (x / CENTIMETRE) * ZOOM,
     RACK_TOP + RACK[1] / 2 - (y / CENTIMETRE) * ZOOM, a / CENTIMETRE, b / CENTIMETRE, angle, ZOOM];
 }
 
@@ -64,6 +69,7 @@ function drawDish(state, i, sunk) {
   const marks = `${state.held === i ? " held" : ""}${state.moved === i ? " moved" : ""}`;
   return svg("g", {
     class: `dish d${category}${marks}`,
+    "data-instance": FIRST_DISH + i,
     "data-place": state.places[i],
     transform: `translate(${x.toFixed(1)},${y.toFixed(1)}) rotate(${-angle}) scale(${zoom})`,
   },
@@ -79,7 +85,8 @@ function drawRack(state, rack, dishes) {
     wires.push(`M${left + (i * RACK[0]) / 6},${RACK_TOP}v${RACK[1]}`,
       `M${left},${RACK_TOP + (i * RACK[1]) / 6}h${RACK[0]}`);
   }
-  return svg("g", { class: out ? "rack out" : "rack" },
+  const instance = rack === "top" ? TOP_RACK : BOTTOM_RACK;
+  return svg("g", { class: out ? "rack out" : "rack", "data-instance": instance },
     label(left + RACK[0] / 2, RACK_TOP - 7, `${rack} rack, ${out ? "out" : "in"}`, "middle"),
     svg("rect", { class: "frame", x: left, y: RACK_TOP, width: RACK[0], height: RACK[1], rx: 4 }),
     svg("path", { class: "wires", d: wires.join("") }), ...dishes);
@@ -91,13 +98,13 @@ function drawCounter() {
     width: wide / CENTIMETRE, height: deep / CENTIMETRE, rx: 5 };
   return svg("g", {},
     svg("rect", { class: "counter", x: 0, y: 0, width: WIDTH, height: DEPTH, rx: 3 }),
-    svg("rect", { class: "basin", ...sink }),
+    svg("rect", { class: "basin", "data-instance": SINK, ...sink }),
     svg("path", { class: "tap", d: `M${counterX(x)},4v16` }));
 }
 
 function drawDoor(state) {
   const title = state.doorOpen ? "door open" : "door closed";
-  return svg("g", { class: state.doorOpen ? "door open" : "door" },
+  return svg("g", { class: state.doorOpen ? "door open" : "door", "data-instance": DOOR },
     svg("rect", { x: GAP, y: DOOR_TOP, width: WIDTH - 2 * GAP, height: 16, rx: 4 }),
     label(WIDTH / 2, DOOR_TOP + 12, title, "middle"));
 }
@@ -111,8 +118,8 @@ function drawKitchen(state, title) {
   });
   const viewBox = `-3 -3 ${WIDTH + 6} ${HEIGHT + 6}`;
   return svg("svg", { viewBox, role: "img", "aria-label": title },
-    drawCounter(), ...drawn.sink, ...drawn.counter, drawDoor(state),
-    drawRack(state, "top", drawn.top), drawRack(state, "bottom", drawn.bottom));
+    drawDoor(state), drawRack(state, "top", drawn.top), drawRack(state, "bottom", drawn.bottom),
+    drawCounter(), ...drawn.sink, ...drawn.counter);
 }
 
 /** All decisions as a timeline, the later ones fainter. */

@@ -1,0 +1,111 @@
+// The left side: the visitor decides, and the kitchen answers.
+
+const you = {
+  stage: null,
+  kitchen: null, // the session whose dishes stand there
+  steps: [], // as `replay` gives them: the state at the start and after each decision
+  decisions: [], // what the kitchen carried out
+  refused: 0,
+  shown: [], // finished demonstrations: what TTP is prompted with
+};
+
+const yourState = () => you.steps.at(-1).state;
+
+function startDemonstration(kitchen, decisions = []) {
+  you.kitchen = kitchen;
+  you.decisions = decisions;
+  you.steps = replay(kitchen, decisions, []);
+  you.refused = 0;
+  showYou("");
+}
+
+/** Carry out the visitor's choice, or say why not. */
+function youChoose(instance) {
+  if (isFinished(yourState())) return;
+  const before = yourState();
+  const state = structuredClone(before);
+  const [text, kind] = [inWords(before, instance), kindOf(before, instance)];
+  const reason = decide(state, instance);
+  if (reason !== "") {
+    you.refused += 1;
+    showYou(reason, true);
+    return;
+  }
+  you.decisions.push(instance);
+  you.steps.push({ state, text, kind, refused: false });
+  remember();
+  showYou([text.replace(/^./, (first) => first.toUpperCase()), arrivalIn(before, state)]
+    .filter(Boolean).join(". "));
+  if (isFinished(state)) finishDemonstration();
+}
+
+function undo() {
+  if (you.decisions.length === 0 || isFinished(yourState())) return;
+  you.decisions.pop();
+  you.steps.pop();
+  remember();
+  showYou("Taken back");
+}
+
+/** Put a dish back that has only been picked. */
+function putBack(event) {
+  if (event.key === "Escape" && yourState().held !== null) undo();
+  else if (event.key.toLowerCase() === "u" && !event.ctrlKey && !event.metaKey) undo();
+}
+
+function finishDemonstration() {
+  you.shown.push({ session: you.kitchen, decisions: [...you.decisions] });
+  remember();
+  keepDemonstration();
+  if (!study.name) startWatching(you.shown.length > 1 ? kitchens.next("load") : ttp.kitchen);
+}
+
+function showYou(says, refused = false) {
+  const state = yourState();
+  you.stage.show(state, "Your kitchen");
+  showInThree("you", state, you.kitchen);
+  byId("you-says").textContent = says;
+  byId("you-says").classList.toggle("refused", refused);
+  byId("you-hint").textContent = hintFor(state);
+  byId("you-count").textContent = countsOf(state, you.decisions.length);
+  byId("you-timeline").replaceChildren(
+    drawTimeline(you.steps, you.decisions.length, Math.max(you.decisions.length, 40)));
+  byId("undo").disabled = you.decisions.length === 0 || isFinished(state);
+}
+
+/** What arrived with the last action, in words. */
+function arrivalIn(before, state) {
+  if (state.arrived === before.arrived) return "";
+  return `A ${categoryOf(state, state.arrived - 1)} arrives`;
+}
+
+const categoryOf = (state, dish) => data.layout.categories[state.dishes[dish].category];
+
+function countsOf(state, decisions) {
+  const waiting = state.places.filter((place) => place === "to arrive").length;
+  return [`${decisions} decisions`, `${counterDishes(state).length} on the counter`,
+    waiting ? `${waiting} to arrive` : ""].filter(Boolean).join(" \u00b7 ");
+}
+
+/** What a visitor may do next. */
+function hintFor(state) {
+  if (isFinished(state)) return study.name ? "Finished. Thank you." : "Finished. Now watch TTP.";
+  if (state.held !== null) return hintWithDish(state);
+  if (counterDishes(state).length === 0) {
+    if (state.out !== null) return "Push the rack in.";
+    return "Everything is loaded: close the door.";
+  }
+  if (!state.doorOpen) return "Open the door: click the bar at the bottom.";
+  if (state.out === null) return "Pull out a rack.";
+  return "Pick a dish, or push the rack in.";
+}
+
+function hintWithDish(state) {
+  const dish = categoryOf(state, state.held);
+  if (state.out === null) {
+    return `No rack is out: the ${dish} can only go into the sink. Undo puts it back.`;
+  }
+  const free = freePlacements(state, state.out, state.dishes[state.held].category).length;
+  if (free > 0) return `Choose a place for the ${dish}: ${free} are free. Or the sink.`;
+  return `No place is free for a ${dish} in the ${state.out} rack. Undo puts it back; the sink takes it.`;
+}

@@ -1,0 +1,165 @@
+// The right side: TTP loads another counter as the visitor did, decision by decision.
+
+const DECISIONS_A_DISH = 2; // a pick and a place
+const JOINT_DECISIONS = 6; // the door and both racks, open and closed
+const LIMIT_FACTOR = 2; // an episode ends at twice what it takes, as in the environment
+
+const ttp = {
+  policy: null,
+  kitchen: null,
+  steps: [], // as `replay` gives them
+  decisions: [],
+  memory: null, // what the policy keeps of the episode
+  preference: null, // the rule that the demonstrations imply
+  shownInWords: [], // each demonstration's decisions
+  timer: null,
+};
+
+const ttpState = () => ttp.steps.at(-1).state;
+
+/** Show the kitchen that TTP will load. */
+function showWhatWaits(kitchen) {
+  ttp.kitchen = kitchen;
+  ttp.steps = replay(kitchen, [], []);
+  ttp.decisions = [];
+  showTTP("waits for your demonstration");
+}
+
+/** Prompt TTP with all that was shown and let it begin. */
+function startWatching(kitchen) {
+  pause();
+  ttp.policy ??= new TTP(data.policy);
+  ttp.preference = impliedPreference(you.shown);
+  ttp.shownInWords = you.shown.map(decisionsInWords);
+  ttp.memory = ttp.policy.begin(ttp.policy.readPrompts(you.shown));
+  byId("score").hidden = true;
+  byId("next").hidden = true;
+  showWhatWaits(kitchen);
+  showTTP(you.shown.length > 1 ? `has read your ${you.shown.length} demonstrations`
+    : "has read your demonstration");
+  play();
+}
+
+function ttpDecides() {
+  const before = ttpState();
+  const state = structuredClone(before);
+  const seen = observe(before, ttp.kitchen, ttp.decisions.length);
+  const { instance, attention } = ttp.policy.decide(ttp.memory, seen);
+  const [text, kind] = [inWords(before, instance), kindOf(before, instance)];
+  const reason = decide(state, instance);
+  ttp.decisions.push(instance);
+  ttp.steps.push({ state, text, kind, refused: reason !== "" });
+  showFollowing(before, instance, attention);
+  showTTP(reason ? `Refused: ${text}. ${reason}` : text, reason !== "");
+  if (watchingIsOver()) showScore();
+}
+
+/** Whether TTP has finished, or not begun. */
+function watchingIsOver() {
+  if (ttp.memory === null) return true;
+  const state = ttpState();
+  const limit = LIMIT_FACTOR * (DECISIONS_A_DISH * state.dishes.length + JOINT_DECISIONS);
+  return isFinished(state) || ttp.decisions.length >= limit;
+}
+
+function play() {
+  if (ttp.timer !== null) return pause();
+  if (watchingIsOver()) return undefined;
+  byId("play").textContent = "Pause";
+  byId("ttp-says").setAttribute("aria-live", "off"); // a screen reader would read every decision
+  const next = () => {
+    ttpDecides();
+    if (watchingIsOver()) pause();
+    else ttp.timer = setTimeout(next, Number(byId("speed").value));
+  };
+  ttp.timer = setTimeout(next, Number(byId("speed").value));
+  return undefined;
+}
+
+function pause() {
+  clearTimeout(ttp.timer);
+  ttp.timer = null;
+  byId("play").textContent = "Play";
+  byId("ttp-says").setAttribute("aria-live", "polite");
+}
+
+function oneDecision() {
+  pause();
+  ttpDecides();
+}
+
+function showTTP(says, refused = false) {
+  const state = ttpState();
+  byId("ttp-drawing").replaceChildren(drawKitchen(state, `TTP: ${says}`));
+  showInThree("ttp", state, ttp.kitchen);
+  byId("ttp-says").textContent = says;
+  byId("ttp-says").classList.toggle("refused", refused);
+  byId("ttp-count").textContent = countsOf(state, ttp.decisions.length);
+  byId("ttp-timeline").replaceChildren(
+    drawTimeline(ttp.steps, ttp.decisions.length, Math.max(ttp.decisions.length, 40)));
+  for (const id of ["play", "step"]) byId(id).disabled = watchingIsOver();
+}
+
+// What of the visitor a decision follows ----------------------------------------------------------
+
+function showFollowing(state, instance, attention) {
+  byId("by-rule").textContent = ruleBehind(state, instance, ttp.preference);
+  byId("by-attention").textContent = attended(attention);
+}
+
+/** The part of the rule that speaks of a decision. */
+function ruleBehind(state, instance, preference) {
+  const dish = state.held ?? instance - FIRST_DISH;
+  if (dish >= 0) return ruleFor(state.dishes[dish].category, preference);
+  if (instance === DOOR) return state.doorOpen ? "closes when all is loaded" : "opens the door first";
+  const rank = preference.racks.indexOf(RACK_OF[instance]);
+  return `the ${RACK_OF[instance]} rack ${["first", "second"][rank]}`;
+}
+
+/** Which of the visitor's decisions the network weighs most, like ones together, and how much. */
+function attended(attention) {
+  const weights = new Map();
+  ttp.shownInWords.forEach((decisions, number) => decisions.forEach((words, i) => {
+    const weight = attention[number][i] / ttp.shownInWords.length;
+    weights.set(words, (weights.get(words) ?? 0) + weight);
+  }));
+  const [words, weight] = [...weights].sort((one, other) => other[1] - one[1])[0];
+  return `${words} (${Math.round(100 * weight)} % of its attention)`;
+}
+
+/** Each decision of a demonstration, like ones in the same words: "cups into the top rack". */
+function decisionsInWords({ session, decisions }) {
+  const steps = replay(session, decisions, []);
+  return decisions.map((instance, number) => {
+    const { state } = steps[number];
+    if (instance === DOOR || instance in RACK_OF) return `you: ${inWords(state, instance)}`;
+    const place = state.held === null ? decisions[number + 1] : instance;
+    const dish = state.held ?? instance - FIRST_DISH;
+    const where = place === SINK ? "into the sink" : `into the ${rackOfPlacement(place)} rack`;
+    return `your ${plural(state.dishes[dish].category)} ${where}`;
+  });
+}
+
+// How well it followed ----------------------------------------------------------------------------
+
+function showScore() {
+  pause();
+  const demonstration = you.shown.at(-1);
+  const steps = replay(demonstration.session, demonstration.decisions, []);
+  const unseen = ttpState().dishes.filter(({ category }) => ttp.preference.rackOf[category] === null);
+  byId("scores").replaceChildren(
+    scoreRow("TTP, this counter", ttp.steps, ttp.decisions),
+    scoreRow("You, by your own rule", steps, demonstration.decisions, you.refused));
+  byId("score-note").textContent = unseen.length === 0 ? ""
+    : `${unseen.length} dishes of kinds that you have never shown are not counted.`;
+  byId("your-way").textContent = ruleInWords(ttp.preference);
+  byId("score").hidden = false;
+  byId("next").hidden = false;
+}
+
+function scoreRow(name, steps, decisions, refused = steps.filter((step) => step.refused).length) {
+  const numbers = [fixed(packingOf(steps.at(-1).state, ttp.preference), 2),
+    fixed(orderOf(steps, decisions, ttp.preference), 2), String(refused)];
+  return html("tr", {}, html("th", { scope: "row" }, name),
+    ...numbers.map((number) => html("td", { class: "number" }, number)));
+}
