@@ -105,11 +105,11 @@ def _save_picture(
     from kitchen_prefs_robot.perception.detection import perceive
     from kitchen_prefs_robot.perception.known_dishes import known_dishes
     from kitchen_prefs_robot.perception.pictures import beside_clusters
-    from kitchen_prefs_robot.perception.trials import SIZE
     from kitchen_prefs_robot.scene import World, sample_scene
+    from kitchen_prefs_robot.scene.views import PICTURE_SIZE
 
     world, poses = World(sample_scene(scene, colours=colours, lamp=lamp)), laboratory_poses()
-    with Cameras(world, poses, *SIZE, depth_noise) as cameras:
+    with Cameras(world, poses, *PICTURE_SIZE, depth_noise) as cameras:
         frames = cameras.take()
         sight = perceive(cameras.cloud(frames), known_dishes(colours=colours))
     views = [beside_clusters(frame, poses[name], sight.dishes) for name, frame in frames.items()]
