@@ -14,10 +14,9 @@ from kitchen_prefs_robot.perception.known_dishes import known_dishes
 from kitchen_prefs_robot.real_to_sim import measure_work_areas, to_drawers_state
 from kitchen_prefs_robot.scene import World, sample_scene
 from kitchen_prefs_robot.scene.tableware import Colours
+from kitchen_prefs_robot.scene.views import PICTURE_SIZE
 from kitchen_prefs_robot.task.decisions import choices
 from kitchen_prefs_robot.task.rows import observe, prompt_of
-
-SIZE = (320, 240)  # pixels
 
 
 @dataclass(frozen=True)
@@ -76,7 +75,7 @@ def record(
     known = known_dishes(shown.categories, colours)
     world = World(sample_scene(scene, shown.categories, colours, lamp))
     person, sights, pictures, held = Person(world, shown), [], [], []
-    with Cameras(world, laboratory_poses(), *SIZE, depth_noise, scene) as cameras:
+    with Cameras(world, laboratory_poses(), *PICTURE_SIZE, depth_noise, scene) as cameras:
         while True:
             frames = cameras.take()
             sights.append(perceive(cameras.cloud(frames), known))

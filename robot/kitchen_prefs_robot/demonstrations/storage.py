@@ -18,7 +18,8 @@ from kitchen_prefs import instances
 from kitchen_prefs.datasets.columns import FEATURES, FPS, SETS, flat_numbers
 from kitchen_prefs.utils.files import at_work_alone, atomic_folder, make_folder, write_json
 from kitchen_prefs_robot.demonstrations.preferences import human_preference
-from kitchen_prefs_robot.demonstrations.recording import SIZE, HumanDemonstration
+from kitchen_prefs_robot.demonstrations.recording import HumanDemonstration
+from kitchen_prefs_robot.scene.views import PICTURE_SIZE
 from kitchen_prefs_robot.task.rows import prompt_of
 
 NAME = "drawers-human-v1"
@@ -132,7 +133,7 @@ def _write(demonstrations: Iterable[HumanDemonstration], root: Path) -> list[dic
 
 
 def _videos(shown: HumanDemonstration) -> dict[str, dict[str, Any]]:
-    width, height = SIZE
+    width, height = PICTURE_SIZE
     names = ["height", "width", "channels"]
     feature = {"dtype": "video", "shape": (height, width, 3), "names": names}
     return {f"observation.images.{camera}": feature for camera in shown.pictures}

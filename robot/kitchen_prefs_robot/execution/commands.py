@@ -87,13 +87,18 @@ def table(
     """Success and causes of failure in many scenes, with real and with perfect parts.
 
     A row is a variation of what is left to the robot. "Right" is the share of dishes in the right
-    drawer in the right order. The command resumes where it was stopped.
+    drawer in the right order. The command resumes where it was stopped; several commands may work
+    on one --out, each on other variations, and another call then shows all in one table.
 
     Example: kitchen-prefs robot table --policy.path=policies/checkpoints/ttp_drawers --scenes=10
     --out=outputs/robot_table
     """
     from kitchen_prefs.evaluation.policy_loading import load_policy
-    from kitchen_prefs_robot.execution.outcome_files import read_outcomes, write_outcome
+    from kitchen_prefs_robot.execution.outcome_files import (
+        outcome_file,
+        read_outcomes,
+        write_outcome,
+    )
     from kitchen_prefs_robot.execution.trials import VARIATIONS, run_trial, trials
 
     chosen = variation or list(VARIATIONS)
@@ -102,13 +107,13 @@ def table(
     policy = load_policy(path)
     wanted = list(trials(scenes, preferences))
     rows: dict[str, list[EpisodeOutcome]] = {}
-    with at_work_alone(out):
-        for name in chosen:
+    for name in chosen:
+        with at_work_alone(outcome_file(out, name)):
             done = read_outcomes(out, name, policy.fingerprint)
             for trial in tqdm([one for one in wanted if one not in done], name, unit="episode"):
                 done[trial] = run_trial(policy, trial, VARIATIONS[name])
                 write_outcome(out, name, policy.fingerprint, trial, done[trial])
-            rows[name] = [done[trial] for trial in wanted]
+        rows[name] = [done[trial] for trial in wanted]
     Console().print(_as_table(rows))
 
 

@@ -64,11 +64,13 @@ class DecisionLog(Watcher):
         self._pictures: Pictures | None = None
         self._caption = ("", "")
         self._commands = 0
+        self._touching: list[str] = []
 
     def look(self, episode: RobotEpisode) -> None:
         """Note the last decision, and what is seen before the next one."""
         if episode.steps:
             self._write_step(len(episode.steps) - 1, episode.steps[-1])
+        self._touching = [touching.sentence for touching in episode.look.touching]
         if not episode.look.frames:
             return
         frame = episode.look.frames[CAMERA]
@@ -110,6 +112,7 @@ class DecisionLog(Watcher):
         line = {
             "decision": number,
             "seen": [asdict(dish) for dish in step.state.dishes],
+            "touching": self._touching,
             "opened": step.state.opened,
             "in_hand": step.state.in_hand,
             "chosen": in_words(step.state, step.decision),

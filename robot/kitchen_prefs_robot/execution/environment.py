@@ -11,12 +11,11 @@ from kitchen_prefs.envs.spaces import action_space, observation_space
 from kitchen_prefs_robot.demonstrations.preferences import HUMAN_PREFERENCES, human_preference
 from kitchen_prefs_robot.execution.conditions import Conditions
 from kitchen_prefs_robot.execution.episode import RobotEpisode, Step
-from kitchen_prefs_robot.execution.looking import SIZE
 from kitchen_prefs_robot.execution.outcomes import outcome_of
 from kitchen_prefs_robot.execution.prompts import prompt_for
 from kitchen_prefs_robot.execution.trials import observe_episode, trials
 from kitchen_prefs_robot.scene import Pictures
-from kitchen_prefs_robot.scene.views import CAMERAS, VISITOR
+from kitchen_prefs_robot.scene.views import CAMERAS, PICTURE_SIZE, VISITOR
 from kitchen_prefs_robot.task.decisions import Place
 from kitchen_prefs_robot.task.rollouts import TASK
 from kitchen_prefs_robot.task.rows import chosen_decision
@@ -73,7 +72,7 @@ class Drawers(gymnasium.Env):
         self._trials = [trial for trial in known if task_id in (None, trial.preference)]
         self.action_space = action_space()
         shown = observation_space("standard", prompts=1, flat=flat).spaces
-        width, height = SIZE
+        width, height = PICTURE_SIZE
         picture = Box(0, 255, (height, width, 3), np.uint8)
         self.observation_space = Dict({**shown, "pixels": Dict(dict.fromkeys(CAMERAS, picture))})
         self._set_shape = self.observation_space["instances"].shape
@@ -145,7 +144,7 @@ class Drawers(gymnasium.Env):
         if episode.look.frames:
             frames = episode.look.frames
             self._pixels = {camera: frame.colour for camera, frame in frames.items()}
-        width, height = SIZE
+        width, height = PICTURE_SIZE
         blank = np.zeros((height, width, 3), np.uint8)  # where truth is given, nobody looks
         observed = observe_episode(episode, self._prompt.copy())
         return observed | {

@@ -13,15 +13,14 @@ from kitchen_prefs_robot.execution.whereabouts import is_on_table
 from kitchen_prefs_robot.motion.seen_points import exact_points
 from kitchen_prefs_robot.perception.cameras import Cameras, laboratory_poses
 from kitchen_prefs_robot.perception.cloud import Frame
-from kitchen_prefs_robot.perception.detection import Detection, perceive
+from kitchen_prefs_robot.perception.detection import Detection, Touching, perceive
 from kitchen_prefs_robot.perception.known_dishes import known_dishes
 from kitchen_prefs_robot.perception.regions import open_drawer
 from kitchen_prefs_robot.real_to_sim import measure_work_areas, to_drawers_state
 from kitchen_prefs_robot.scene import World
 from kitchen_prefs_robot.scene.layout import DRAWERS
+from kitchen_prefs_robot.scene.views import PICTURE_SIZE
 from kitchen_prefs_robot.task.state import SeenDish
-
-SIZE = (320, 240)  # pixels of the cameras' pictures
 
 
 @dataclass(frozen=True)
@@ -50,12 +49,14 @@ class Look:
         openings: How far each drawer is open, m.
         frames: The cameras' pictures; none where nothing was looked at.
         detections: What perception made of them.
+        touching: What it could not tell apart: the robot leaves these dishes alone.
     """
 
     dishes: tuple[TableDish, ...]
     openings: Mapping[str, float]
     frames: Mapping[str, Frame] = field(default_factory=dict)
     detections: Sequence[Detection] = ()
+    touching: Sequence[Touching] = ()
 
     @property
     def opened(self) -> str | None:
@@ -97,7 +98,7 @@ class CameraEyes:
         categories = tuple(dict.fromkeys(dish.category for dish in world.scene.dishes))
         self._known = known_dishes(categories, conditions.colours)
         self._areas = measure_work_areas(seed=seed)
-        self._cameras = Cameras(world, self.poses, *SIZE, conditions.depth_noise, seed)
+        self._cameras = Cameras(world, self.poses, *PICTURE_SIZE, conditions.depth_noise, seed)
         self._cameras.__enter__()
 
     def look(self) -> Look:
@@ -118,7 +119,7 @@ class CameraEyes:
             TableDish(seen, dish.box.middle, dish.cloud.points, others_of(dish))
             for seen, dish in zip(state.dishes, found, strict=True)
         )
-        return Look(dishes, sight.openings, frames, sight.dishes)
+        return Look(dishes, sight.openings, frames, sight.dishes, sight.touching)
 
     def close(self) -> None:
         """Release OpenGL."""

@@ -14,7 +14,7 @@ def read_outcomes(folder: Path, variation: str, fingerprint: str) -> dict[Trial,
     Raises:
         ValueError: If they are another policy's.
     """
-    file = _file(folder, variation)
+    file = outcome_file(folder, variation)
     found: dict[Trial, EpisodeOutcome] = {}
     for line in file.read_text().splitlines() if file.exists() else ():
         try:
@@ -32,11 +32,12 @@ def write_outcome(
 ) -> None:
     """Add an outcome, on a line of its own even after one that was cut off."""
     line = {"policy": fingerprint, "trial": asdict(trial), "outcome": asdict(outcome)}
-    file = _file(folder, variation)
+    file = outcome_file(folder, variation)
     cut_off = file.exists() and not file.read_text().endswith("\n")
     with file.open("a") as lines:
         lines.write("\n" * cut_off + f"{json.dumps(line)}\n")
 
 
-def _file(folder: Path, variation: str) -> Path:
+def outcome_file(folder: Path, variation: str) -> Path:
+    """Where the outcomes of a variation are."""
     return folder / f"{variation.replace(' ', '_').replace('%', 'percent')}.jsonl"

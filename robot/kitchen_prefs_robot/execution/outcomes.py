@@ -5,13 +5,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from rapidfuzz.distance import LCSseq
 from scipy.stats import bootstrap
 
 from kitchen_prefs.metrics import Interval
 from kitchen_prefs_robot.execution.episode import RobotEpisode, Step
 from kitchen_prefs_robot.execution.whereabouts import drawer_of, is_on_table
 from kitchen_prefs_robot.task.decisions import Place, Toggle
+from kitchen_prefs_robot.task.metrics import in_order
 
 
 @dataclass(frozen=True)
@@ -51,12 +51,7 @@ def outcome_of(episode: RobotEpisode) -> EpisodeOutcome:
     lies_in = [drawer_of(world, number) for number in range(len(categories))]
     wanted = [(c, drawer) for drawer in preference.drawers for c in preference.order(drawer)]
     done = [(categories[n], drawer) for n, drawer in _placements(steps) if lies_in[n] == drawer]
-    right = {
-        wanted[place][0]
-        for block in LCSseq.opcodes(done, wanted)
-        if block.tag == "equal"
-        for place in range(block.dest_start, block.dest_end)
-    }
+    right = {wanted[place][0] for place in in_order(done, wanted)}
     wrong = [number for number, category in enumerate(categories) if category not in right]
     held_as = {step.dish: step.seen_as for step in steps if step.dish is not None}
     return EpisodeOutcome(

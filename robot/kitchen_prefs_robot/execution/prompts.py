@@ -1,6 +1,7 @@
 """What the robot is prompted with: a person's demonstration in another scene."""
 
 from contextlib import suppress
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +12,7 @@ from kitchen_prefs_robot.demonstrations.storage import read_prompt, require_same
 from kitchen_prefs_robot.execution.conditions import Conditions
 from kitchen_prefs_robot.execution.looking import TrueEyes
 from kitchen_prefs_robot.scene import World, sample_scene
+from kitchen_prefs_robot.scene.tableware import Colours
 from kitchen_prefs_robot.task.demonstrations import demonstrate
 from kitchen_prefs_robot.task.sessions import DrawersSession
 from kitchen_prefs_robot.task.state import DrawersState
@@ -35,7 +37,8 @@ def prompt_for(scene: int, preference: int, conditions: Conditions) -> np.ndarra
     """
     shown_in = OTHER_SCENES + scene
     if conditions.perception == "cameras":
-        return _recorded(shown_in, preference, conditions)
+        light = (conditions.colours, conditions.lamp, conditions.depth_noise)
+        return _recorded(shown_in, preference, *light)
     shown = human_preference(preference)
     looked = TrueEyes(World(sample_scene(shown_in, shown.categories)), shown_in).look()
     start = DrawersState(tuple(dish.seen for dish in looked.dishes), None, None)
@@ -59,9 +62,12 @@ def prompt_from(demonstration: str, preference: int) -> np.ndarray:
     return read_prompt(Path(folder), number)
 
 
-def _recorded(shown_in: int, preference: int, conditions: Conditions) -> np.ndarray:
+@cache  # a table prompts many variations with one demonstration; it has .1 MB
+def _recorded(
+    shown_in: int, preference: int, colours: Colours, lamp: float, depth_noise: float
+) -> np.ndarray:
     """A person who was not understood shows it again in another scene."""
-    light = (conditions.colours, conditions.lamp, conditions.depth_noise)
+    light = (colours, lamp, depth_noise)
     for attempt in range(ATTEMPTS - 1):
         with suppress(ValueError):
             return record(shown_in + attempt * AGAIN, preference, *light).prompt

@@ -13,9 +13,8 @@ from kitchen_prefs.envs.lerobot_env import FEATURES_MAP, features_of
 from kitchen_prefs.utils.suggestions import suggest
 from kitchen_prefs_robot.demonstrations.preferences import HUMAN_PREFERENCES
 from kitchen_prefs_robot.execution.environment import Drawers
-from kitchen_prefs_robot.execution.looking import SIZE
 from kitchen_prefs_robot.execution.trials import VARIATIONS
-from kitchen_prefs_robot.scene.views import CAMERAS
+from kitchen_prefs_robot.scene.views import CAMERAS, PICTURE_SIZE
 
 
 @EnvConfig.register_subclass("kitchen_prefs_drawers")
@@ -40,7 +39,7 @@ class DrawersEnv(EnvConfig):
             raise ValueError(
                 f"There is no variation {self.task!r}. {suggest(self.task, VARIATIONS)}"
             )
-        width, height = SIZE
+        width, height = PICTURE_SIZE
         picture = PolicyFeature(FeatureType.VISUAL, (height, width, 3))
         self.features = features_of("standard") | {f"pixels/{name}": picture for name in CAMERAS}
         images = {f"pixels/{name}": f"{OBS_IMAGES}.{name}" for name in CAMERAS}

@@ -10,11 +10,11 @@ from kitchen_prefs.rendering.tableware import surface
 from kitchen_prefs_robot.scene import Pictures, World
 from kitchen_prefs_robot.scene.layout import COUNTER_X, COUNTER_Y
 from kitchen_prefs_robot.scene.tableware import SCALES, SIDES, real_extents
+from kitchen_prefs_robot.scene.views import PICTURE_SIZE
 
 Points = tuple[np.ndarray, np.ndarray]  # of a dish and of all else
 
 COUNT = 1500  # points on the whole surface of a dish
-WIDTH, HEIGHT = 320, 240  # pixels of the pictures: one is 4 mm wide on the table
 VOXEL = 0.004  # m: one point is kept in each cube of that side
 NOISE = 0.0025  # m, standard deviation of each coordinate of each point
 OFFSET = 0.004  # m, standard deviation of each coordinate of all points at once
@@ -48,7 +48,7 @@ def seen_points(world: World, rng: np.random.Generator) -> list[Points]:
     Raises:
         NoOpenGLError: If there is no OpenGL library to draw with.
     """
-    with Pictures(world, WIDTH, HEIGHT) as pictures:
+    with Pictures(world, *PICTURE_SIZE) as pictures:
         cloud = np.concatenate([_camera_points(world, pictures, name) for name in world.cameras])
     cloud = cloud[((cloud > REGION[0]) & (cloud < REGION[1])).all(axis=1)]
     _, kept = np.unique(np.floor(cloud / VOXEL), axis=0, return_index=True)
@@ -82,8 +82,9 @@ def _surface_points(world: World, number: int, rng: np.random.Generator) -> np.n
 def _camera_points(world: World, pictures: Pictures, camera: str) -> np.ndarray:
     """Where a camera's rays end, (H * W, 3) m in the base's frame."""
     depth = pictures.depth(camera)
-    rows, columns = np.mgrid[:HEIGHT, :WIDTH]
+    width, height = PICTURE_SIZE
+    rows, columns = np.mgrid[:height, :width]
     pixels = np.stack([columns, rows, np.ones_like(rows)], axis=-1).reshape(-1, 3)
-    rays = pixels @ np.linalg.inv(world.intrinsics(WIDTH, HEIGHT)).T
+    rays = pixels @ np.linalg.inv(world.intrinsics(width, height)).T
     position, rotation = world.camera_pose(camera)
     return (depth.reshape(-1, 1) * rays) @ rotation.T + position

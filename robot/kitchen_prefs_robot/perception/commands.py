@@ -20,6 +20,9 @@ if TYPE_CHECKING:
 
 def perception(
     scenes: Annotated[int, typer.Option(min=1, help="How many random scenes.")] = 200,
+    first: Annotated[
+        int, typer.Option(min=0, help="The seed of the first; settings were chosen on 0 to 49.")
+    ] = 1000,
     colours: Annotated[
         Literal["distinct", "alike"], typer.Option(help="Of the dishes.")
     ] = "distinct",
@@ -40,10 +43,10 @@ def perception(
 
     known = known_dishes(colours=colours)
     if picture:
-        _save_picture(picture, colours, lamp, depth_noise)
+        _save_picture(picture, first, colours, lamp, depth_noise)
     trials = [
         run_trial(seed, known, colours, lamp, depth_noise)
-        for seed in trange(scenes, desc="Looking at scenes", unit="scene")
+        for seed in trange(first, first + scenes, desc="Looking at scenes", unit="scene")
     ]
     console = Console()
     categories = [dish.category for dish in known]
@@ -94,7 +97,7 @@ def _print_counts(console: Console, trials: "list[Trial]") -> None:
 
 
 def _save_picture(
-    path: Path, colours: Literal["distinct", "alike"], lamp: float, depth_noise: float
+    path: Path, scene: int, colours: Literal["distinct", "alike"], lamp: float, depth_noise: float
 ) -> None:
     from PIL import Image
 
@@ -102,11 +105,11 @@ def _save_picture(
     from kitchen_prefs_robot.perception.detection import perceive
     from kitchen_prefs_robot.perception.known_dishes import known_dishes
     from kitchen_prefs_robot.perception.pictures import beside_clusters
-    from kitchen_prefs_robot.perception.trials import SIZE
     from kitchen_prefs_robot.scene import World, sample_scene
+    from kitchen_prefs_robot.scene.views import PICTURE_SIZE
 
-    world, poses = World(sample_scene(0, colours=colours, lamp=lamp)), laboratory_poses()
-    with Cameras(world, poses, *SIZE, depth_noise) as cameras:
+    world, poses = World(sample_scene(scene, colours=colours, lamp=lamp)), laboratory_poses()
+    with Cameras(world, poses, *PICTURE_SIZE, depth_noise) as cameras:
         frames = cameras.take()
         sight = perceive(cameras.cloud(frames), known_dishes(colours=colours))
     views = [beside_clusters(frame, poses[name], sight.dishes) for name, frame in frames.items()]

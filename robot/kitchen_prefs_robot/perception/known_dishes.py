@@ -13,10 +13,10 @@ from kitchen_prefs_robot.perception.detection import median_colour
 from kitchen_prefs_robot.perception.regions import cut_regions
 from kitchen_prefs_robot.scene import PAPER_DISHES, World, sample_scene
 from kitchen_prefs_robot.scene.tableware import Colours, real_extents
+from kitchen_prefs_robot.scene.views import PICTURE_SIZE
 
 SEED = 1_000_000  # of the scenes that show them; no experiment uses it
 TOGETHER = 4  # dishes on the table at once
-SIZE = (320, 240)  # pixels
 
 
 @lru_cache
@@ -43,7 +43,7 @@ def known_dishes(
 
 def _look_at(categories: tuple[str, ...], colours: Colours) -> Iterator[KnownDish]:
     world = World(sample_scene(SEED, categories, colours))
-    with Cameras(world, laboratory_poses(), *SIZE) as cameras:
+    with Cameras(world, laboratory_poses(), *PICTURE_SIZE) as cameras:
         cloud = cameras.cloud(cameras.take())
     counter = cut_regions(cloud, np.random.default_rng(0)).clouds["counter"]
     clusters = find_clusters(counter, largest=np.inf)

@@ -14,8 +14,8 @@ from kitchen_prefs_robot.perception.detection import Detection, Sight, perceive
 from kitchen_prefs_robot.scene import World, sample_scene
 from kitchen_prefs_robot.scene.layout import DRAWER_TRAVEL, DRAWERS
 from kitchen_prefs_robot.scene.tableware import Colours
+from kitchen_prefs_robot.scene.views import PICTURE_SIZE
 
-SIZE = (320, 240)  # pixels
 SAME_DISH = 0.08  # m between a cluster and the dish that it stands for, at most
 OPENING = 7  # sets the random numbers of the opening apart from the others of a seed
 UNKNOWN, MISSED = "unknown", "missed"
@@ -84,7 +84,7 @@ def run_trial(
     drawer, opening = str(rng.choice(DRAWERS)), float(rng.uniform(0.0, DRAWER_TRAVEL))
     world.set_drawer(drawer, opening)
     poses = calibrate(world)
-    with Cameras(world, poses, *SIZE, depth_noise, seed) as cameras:
+    with Cameras(world, poses, *PICTURE_SIZE, depth_noise, seed) as cameras:
         sight = perceive(cameras.cloud(cameras.take()), known)
     errors = [pose_error(poses[camera], _true_pose(world, camera)) for camera in world.cameras]
     found, extra = _compare(world, sight)

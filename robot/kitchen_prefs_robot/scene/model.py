@@ -12,7 +12,6 @@ from kitchen_prefs_robot.scene.views import add_views
 TIMESTEP = 0.002  # s
 # Friction beside the force that presses: with pyramids and 1 a plate slips out of the pads.
 IMPEDANCE_RATIO = 10.0
-LARGEST_PICTURE = (1920, 1080)  # width and height in pixels
 
 
 def dish_body(number: int) -> str:
@@ -28,7 +27,6 @@ def scene_spec(scene: Scene) -> mujoco.MjSpec:
     spec.option.cone = mujoco.mjtCone.mjCONE_ELLIPTIC
     spec.option.impratio = IMPEDANCE_RATIO
     spec.option.enableflags |= mujoco.mjtEnableBit.mjENBL_SLEEP
-    spec.visual.global_.offwidth, spec.visual.global_.offheight = LARGEST_PICTURE
     add_furniture(spec)
     add_tags(spec)
     add_views(spec, scene.lamp)

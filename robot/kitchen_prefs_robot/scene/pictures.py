@@ -30,6 +30,9 @@ class Pictures:
         self._camera.type = mujoco.mjtCamera.mjCAMERA_FIXED
         self._frame = mujoco.MjrRect(0, 0, width, height)
         self._opengl = open_context(width, height)
+        # The buffer is no larger than the picture: OpenGL clears all of it each time.
+        size = world.model.vis.global_
+        size.offwidth, size.offheight = width, height
         self._drawing = mujoco.MjrContext(world.model, mujoco.mjtFontScale.mjFONTSCALE_100)
         mujoco.mjr_setBuffer(mujoco.mjtFramebuffer.mjFB_OFFSCREEN, self._drawing)
         self._drawing.readDepthMap = mujoco.mjtDepthMap.mjDEPTH_ZEROFAR

@@ -28,6 +28,7 @@ VIEWS = {
     "above": View((0.95, -0.62, 1.05), (0.44, -0.12, 0.00)),
 }
 CAMERAS = tuple(VIEWS)
+PICTURE_SIZE = (320, 240)  # width and height in pixels: one is 4 mm wide on the table
 VISITOR = "visitor"  # sees the whole robot; perception does not use it
 VISITOR_VIEW = View((1.35, -1.30, 0.95), (0.36, 0.10, 0.22))
 

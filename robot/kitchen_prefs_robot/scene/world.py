@@ -43,7 +43,8 @@ class World:
     def advance(self, seconds: float) -> None:
         """Let physics run; the arm holds or approaches what `data.ctrl` says."""
         mujoco.mj_step(self.model, self.data, round(seconds / self.model.opt.timestep))
-        mujoco.mj_forward(self.model, self.data)
+        mujoco.mj_kinematics(self.model, self.data)  # where all is now, for who looks
+        mujoco.mj_camlight(self.model, self.data)
 
     def dish_pose(self, number: int) -> tuple[np.ndarray, np.ndarray]:
         """The true position, (3,) m, and quaternion, (4,) wxyz, of a dish."""

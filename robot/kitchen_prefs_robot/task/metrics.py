@@ -1,6 +1,6 @@
 """The paper's success on hardware, and an episode as the kitchen's metrics read it."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from itertools import groupby, pairwise
 
 from rapidfuzz.distance import LCSseq
@@ -24,12 +24,30 @@ def right_dishes(episode: Episode) -> float:
     """
     refused_by_expert = [False] * len(episode.expert_kinds)
     expert = _placements(episode.expert_kinds, refused_by_expert)
-    return LCSseq.similarity(_placements(episode.kinds, episode.refused), expert) / len(expert)
+    return len(in_order(_placements(episode.kinds, episode.refused), expert)) / len(expert)
 
 
 def right_drawer(episode: Episode) -> float:
     """The share of dishes in the right drawer, in whatever order."""
     return sum(episode.placed) / sum(episode.expert_placed)
+
+
+def in_order(done: Sequence[tuple[str, str]], wanted: Sequence[tuple[str, str]]) -> set[int]:
+    """Which of the wanted placements were made in the right order.
+
+    Args:
+        done: Category and drawer of each dish, as placed.
+        wanted: The same as it should be.
+
+    Returns:
+        The numbers of those among `wanted` that are in the longest sequence that both share.
+    """
+    return {
+        place
+        for block in LCSseq.opcodes(done, wanted)
+        if block.tag == "equal"
+        for place in range(block.dest_start, block.dest_end)
+    }
 
 
 METRICS: dict[str, Metric] = {

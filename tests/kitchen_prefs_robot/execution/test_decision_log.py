@@ -1,4 +1,7 @@
-"""The video of an episode, looked at."""
+"""The video of an episode, looked at, and its log."""
+
+import json
+from dataclasses import replace
 
 import av
 import numpy as np
@@ -7,7 +10,19 @@ import pytest
 pytest.importorskip("gym_hil", reason="needs the extra robot")
 
 from kitchen_prefs_robot.demonstrations.preferences import HUMAN_PREFERENCES
-from kitchen_prefs_robot.execution.decision_log import BAR, SIZE, _captioned, in_words, write_video
+from kitchen_prefs_robot.execution.conditions import Conditions
+from kitchen_prefs_robot.execution.decision_log import (
+    BAR,
+    SIZE,
+    DecisionLog,
+    _captioned,
+    in_words,
+    write_video,
+)
+from kitchen_prefs_robot.execution.episode import RobotEpisode
+from kitchen_prefs_robot.execution.looking import TrueEyes
+from kitchen_prefs_robot.perception.clusters import Box
+from kitchen_prefs_robot.perception.detection import Touching
 from kitchen_prefs_robot.task.decisions import Pick, Place, Toggle
 from kitchen_prefs_robot.task.state import DrawersState, SeenDish
 
@@ -46,3 +61,17 @@ def test_the_longest_caption_fits(preference):
     assert bar[:, :-6].max() > 180
     assert bar[:, -6:].max() < 60
     assert bar[-4:].max() < 60
+
+
+def test_dishes_that_touch_are_in_the_log(tmp_path, monkeypatch):
+    touching = Touching("counter", Box(np.zeros(3), np.array([0.3, 0.2, 0.1]), 0.0))
+    look = TrueEyes.look
+    monkeypatch.setattr(TrueEyes, "look", lambda eyes: replace(look(eyes), touching=(touching,)))
+    given = Conditions(perception="truth", grasps="truth")
+    with RobotEpisode(3, HUMAN_PREFERENCES[0], given) as episode:
+        log = DecisionLog(tmp_path)
+        log.look(episode)
+        episode.decide(Toggle("upper"))
+        log.look(episode)
+    (line,) = (tmp_path / "decisions.jsonl").read_text().splitlines()
+    assert "move them apart" in json.loads(line)["touching"][0]

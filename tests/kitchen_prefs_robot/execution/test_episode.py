@@ -7,6 +7,7 @@ pytest.importorskip("gym_hil", reason="needs the extra robot")
 from kitchen_prefs_robot.demonstrations.preferences import human_preference
 from kitchen_prefs_robot.execution.conditions import Conditions
 from kitchen_prefs_robot.execution.episode import RobotEpisode
+from kitchen_prefs_robot.execution.looking import Look
 from kitchen_prefs_robot.execution.outcomes import mean_right, outcome_of
 from kitchen_prefs_robot.execution.whereabouts import drawer_of
 from kitchen_prefs_robot.motion.outcomes import Result
@@ -101,3 +102,41 @@ def test_a_mean_has_an_interval():
     interval = mean_right([nothing, everything] * 10)
     assert 0 < interval.low < interval.mean == 0.5 < interval.high < 1
     assert mean_right([everything] * 3).low == 1.0
+
+
+def test_a_drawer_is_open_or_closed_and_the_other_waits():
+    with RobotEpisode(3, human_preference(0), GIVEN) as episode:
+        episode.decide(Toggle("upper"))
+        refused = episode.decide(Toggle("lower"))
+        assert (refused.refusal != "", refused.result) == (True, None)
+        assert episode.state.opened == "upper"
+        assert episode.decide(Toggle("upper")).result is Result.DONE  # open already: it closes
+        assert episode.state.opened is None
+
+
+def test_a_drawer_that_jams_is_what_its_dishes_fail_by():
+    with RobotEpisode(3, human_preference(0), Conditions(perception="truth")) as episode:
+        episode.world.model.joint("lower").range[:] = (0.0, 0.02)
+        assert episode.decide(Toggle("lower")).result is Result.JAMMED
+        assert episode.state.opened is None
+        assert outcome_of(episode).causes == {"drawer": 4}
+
+
+class Blind:
+    """Looks at nothing, and remembers that it was closed."""
+
+    closed = False
+
+    def look(self):
+        return Look((), {"upper": 0.0, "lower": 0.0})
+
+    def close(self):
+        self.closed = True
+
+
+def test_a_scene_without_a_dish_is_one_sentence_and_the_cameras_are_released(monkeypatch):
+    blind = Blind()
+    monkeypatch.setattr("kitchen_prefs_robot.execution.episode.make_eyes", lambda *_: blind)
+    with pytest.raises(ValueError, match=r"^The cameras see no dish in scene 3; .*view\.$"):
+        RobotEpisode(3, human_preference(0), GIVEN)
+    assert blind.closed

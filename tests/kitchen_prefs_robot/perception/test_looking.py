@@ -134,7 +134,9 @@ def test_a_trial_counts_what_was_found(poses):
 
 def test_the_command_prints_a_confusion_matrix_and_saves_a_picture(poses, tmp_path):
     path = tmp_path / "clusters.png"
-    result = CliRunner().invoke(app, ["perception", "--scenes=1", "--lamp=0", f"--picture={path}"])
+    result = CliRunner().invoke(
+        app, ["perception", "--scenes=1", "--first=11", "--lamp=0", f"--picture={path}"]
+    )
     assert result.exit_code == 0, result.output
     assert "Scenes without any mistake: 1 of 1" in result.output
     assert np.asarray(Image.open(path)).shape == (3 * 240, 2 * 320, 3)
@@ -147,3 +149,10 @@ def test_without_opengl_it_is_one_sentence(monkeypatch):
     monkeypatch.setattr("kitchen_prefs_robot.scene.pictures.open_context", nothing)
     with pytest.raises(NoOpenGLError, match="apt install"):
         calibrate(World(sample_scene(0)))
+
+
+def test_without_the_robots_packages_it_is_one_sentence(monkeypatch):
+    monkeypatch.setattr("kitchen_prefs_robot.commands.find_spec", lambda _: None)
+    said = str(CliRunner().invoke(app, ["run", "--policy.path=x", "--scene=3"]).exception)
+    assert "pip install 'lerobot_policy_kitchen_prefs[robot]'" in said
+    assert "\n" not in said
