@@ -1,13 +1,24 @@
-"""Users who load by a preference, and slip at a known rate."""
+"""Users who load by a preference, perhaps with slips at a known rate, and the files they give."""
 
 import numpy as np
 
 from kitchen_prefs.preferences import SPACE_SIZE, preference_from_number
-from kitchen_prefs.simulation.expert import KitchenView, choose
+from kitchen_prefs.simulation.expert import KitchenView, choose, roll_out_expert
 from kitchen_prefs.simulation.kitchen import SINK, Kitchen
 from kitchen_prefs_demonstrations.file_format import DemonstrationFile
 from kitchen_prefs_demonstrations.kitchens import study_session
 from kitchen_prefs_demonstrations.replaying import replay
+
+# Ten preferences, spread over all 2 x 7!; none is one of the twelve.
+NUMBERS = tuple(range(500, 10_080, 1_000))
+
+
+def content_of(session, preference, **changes):
+    """The content of the file of a demonstration by the expert of a preference."""
+    decisions = list(roll_out_expert(Kitchen(session.dishes), preference).decisions)
+    start = {"split": session.split, "session": session.index, "salt": session.salt}
+    person = {"user": "Ada", "consent": True, "study": None}
+    return {"format": 1, "data_version": 1} | start | {"decisions": decisions} | person | changes
 
 
 def preference_of(number):

@@ -80,7 +80,7 @@ DEMONSTRATIONS = {
     "kitchens": "kitchen_prefs.simulation kitchen_prefs.splits",
     "replaying": "file_format kitchen_prefs.envs kitchen_prefs.simulation kitchen_prefs.splits",
     "implied_preference": (
-        "replaying kitchen_prefs.preferences kitchen_prefs.simulation "
+        "habits replaying kitchen_prefs.preferences kitchen_prefs.simulation "
         "lerobot_policy_kitchen_prefs.rules"
     ),
     "importing": (

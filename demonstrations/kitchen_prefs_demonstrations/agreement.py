@@ -83,16 +83,16 @@ def _measures(compared: dict[tuple[int, int], list[Comparison]], users: int) -> 
     found = {}
     for name in MEASURES:
         values = {
-            pair: np.mean(known)
+            pair: float(np.mean(known))
             for pair, comparisons in compared.items()
-            if (known := [c[name] for c in comparisons if c[name] is not None])
+            if (known := [value for c in comparisons if (value := c[name]) is not None])
         }
         if values:
             found[name] = _over_users(values, users)
     return found
 
 
-def _over_users(values: dict[tuple[int, int], np.floating], users: int) -> Interval:
+def _over_users(values: dict[tuple[int, int], float], users: int) -> Interval:
     """The mean over pairs of users, and its interval when users are drawn with replacement.
 
     A user who is drawn twice counts twice in each pair; a pair of two users counts as often as both

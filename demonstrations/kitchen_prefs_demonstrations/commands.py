@@ -102,10 +102,11 @@ def import_files(
     from kitchen_prefs_demonstrations.importing import import_demonstrations
 
     episodes = import_demonstrations(files, name, without_consent)
-    table = Table("Episode", "User", "Finished", "Preference", "Explains", title=name)
+    table = Table("Episode", "User", "Finished", "Preference", "Explains", "Pairs", title=name)
     for number, episode in enumerate(episodes):
         table.add_row(str(number), *_row(episode))
     console.print(table)
+    console.print("Explains: share of picks and places. Pairs: how many of 9 are shown in order.")
     console.print(f"The data set is kitchen_prefs/{name}; --prompt={name}:0 prompts a policy.")
 
 
@@ -149,4 +150,4 @@ def _row(episode: "ImportedEpisode") -> tuple[str, ...]:
     file, implied = episode.replayed.file, episode.implied
     words = implied.preference.in_words if implied.is_followed else f"none: {implied.why_not}"
     finished = "yes" if episode.replayed.finished else "no"
-    return file.who or "-", finished, words, f"{implied.share:.0%}"
+    return file.who or "-", finished, words, f"{implied.share:.0%}", str(implied.ordered)

@@ -7,6 +7,7 @@ import numpy as np
 from kitchen_prefs.preferences import CATEGORIES, Preference
 from kitchen_prefs.simulation.expert import KitchenView, choose
 from kitchen_prefs.simulation.kitchen import FIRST_DISH, Kitchen, decision_kind
+from kitchen_prefs_demonstrations.habits import occasions_of
 from kitchen_prefs_demonstrations.replaying import ReplayedDemonstration
 
 # Two slips among the 24 or 28 picks and places of a demonstration leave .92 or .93.
@@ -21,11 +22,14 @@ class ImpliedPreference:
         preference: The preference.
         share: The share of picks and places that are of the kind that its expert chooses there.
         unseen: The categories of which no dish stands in a rack: their rack is a guess.
+        ordered: How many of the nine pairs of categories of one rack the demonstration puts into an
+            order; the order of the others is a guess.
     """
 
     preference: Preference
     share: float
     unseen: tuple[str, ...]
+    ordered: int
 
     @property
     def is_followed(self) -> bool:
@@ -50,7 +54,8 @@ def implied_preference(demonstration: ReplayedDemonstration) -> ImpliedPreferenc
     kitchen = demonstration.kitchen
     shown = np.unique(kitchen.dishes.category[kitchen.placement >= 0])
     unseen = tuple(name for i, name in enumerate(CATEGORIES) if i not in shown)
-    return ImpliedPreference(preference, _share(demonstration, preference), unseen)
+    ordered = len(_ordered_pairs(demonstration, preference))
+    return ImpliedPreference(preference, _share(demonstration, preference), unseen, ordered)
 
 
 def _share(demonstration: ReplayedDemonstration, preference: Preference) -> float:
@@ -64,3 +69,24 @@ def _share(demonstration: ReplayedDemonstration, preference: Preference) -> floa
             same.append(kind == decision_kind(instance, dishes))
         kitchen.decide(instance)
     return float(np.mean(same))
+
+
+def _ordered_pairs(
+    demonstration: ReplayedDemonstration, preference: Preference
+) -> set[tuple[str, str]]:
+    """The pairs of categories of one rack of which the demonstration shows the order.
+
+    One is picked for the rack that is out while the other waits, or a third is between them.
+    """
+    pairs = {
+        (occasion.picked, other)
+        for occasion in occasions_of(demonstration)
+        if occasion.picked and preference.rack_of[occasion.picked] == occasion.rack
+        for other in occasion.waiting - {occasion.picked}
+        if preference.rack_of[other] == occasion.rack
+    }
+    for middle in CATEGORIES:  # Warshall: the order is transitive
+        before = [one for one in CATEGORIES if (one, middle) in pairs]
+        after = [other for other in CATEGORIES if (middle, other) in pairs]
+        pairs |= {(one, other) for one in before for other in after}
+    return {(min(pair), max(pair)) for pair in pairs if pair[0] != pair[1]}

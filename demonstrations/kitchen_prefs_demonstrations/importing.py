@@ -137,4 +137,6 @@ def _facts(episode: ImportedEpisode) -> dict:
     start = file.model_dump(include={"split", "session", "salt"})
     who = file.model_dump(include={"user", "consent", "study"})
     shown = {"finished": episode.replayed.finished, "preference": episode.label}
-    return start | who | shown | {"share_of_preference": round(episode.implied.share, 4)}
+    implied = episode.implied
+    explained = {"share_of_preference": round(implied.share, 4), "ordered_pairs": implied.ordered}
+    return start | who | shown | explained

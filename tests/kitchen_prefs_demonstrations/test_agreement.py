@@ -9,7 +9,7 @@ from simulated_users import demonstrated, dishes_of, preference_of, slipping, st
 
 from kitchen_prefs.metrics import Interval
 from kitchen_prefs_demonstrations.agreement import agreement
-from kitchen_prefs_demonstrations.comparison import compare, traits_of, where
+from kitchen_prefs_demonstrations.comparison import MEASURES, compare, traits_of, where
 from kitchen_prefs_demonstrations.habits import habit_of, occasions_of, turns
 from kitchen_prefs_demonstrations.kitchens import study_session
 
@@ -25,9 +25,7 @@ def test_a_user_who_never_slips_agrees_with_herself(steady):
     found = agreement(steady)
     assert found.users == USERS
     assert found.pairs == {"self": USERS, "others": 4 * USERS * (USERS - 1) // 2}
-    assert found.measures["self"] == dict.fromkeys(
-        ("Where", "Turn", "PE", "ED_c"), Interval(1, 1, 1)
-    )
+    assert found.measures["self"] == dict.fromkeys(MEASURES, Interval(1, 1, 1))
     for name, interval in found.measures["others"].items():
         assert interval.low < interval.mean < interval.high < 1, name
 
