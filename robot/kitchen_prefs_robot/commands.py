@@ -15,7 +15,7 @@ from tqdm import tqdm
 from kitchen_prefs.evaluation.policy_options import ANY_SETTING
 from kitchen_prefs.metrics import wilson
 from kitchen_prefs.rendering.opengl import NoOpenGLError
-from kitchen_prefs_robot.demonstrations.commands import demonstrate
+from kitchen_prefs_robot.demonstrations.commands import demonstrate, verify
 from kitchen_prefs_robot.execution.commands import run, table
 from kitchen_prefs_robot.perception.commands import perception
 from kitchen_prefs_robot.task.commands import data, task
@@ -25,6 +25,7 @@ app = typer.Typer(
 )
 app.command()(perception)
 app.command()(demonstrate)
+app.command()(verify)
 app.command()(run)
 app.command()(table)
 app.command(context_settings=ANY_SETTING)(task)

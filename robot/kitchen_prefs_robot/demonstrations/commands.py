@@ -1,4 +1,4 @@
-"""`kitchen-prefs robot demonstrate`: a person shows how the drawers are loaded.
+"""`kitchen-prefs robot demonstrate` and `verify`: a person shows how the drawers are loaded.
 
 MuJoCo and LeRobot are imported inside the command, so that `kitchen-prefs --help` does not wait.
 """
@@ -68,3 +68,19 @@ def demonstrate(
         f"{len(misread)} demonstrations are in {root}; {sum(misread)} dishes in hand were taken "
         "for another category."
     )
+
+
+def verify(
+    root: Annotated[
+        Path | None, typer.Option(help="Folder of the data set; by default LeRobot's for it.")
+    ] = None,
+) -> None:
+    """Check the human demonstrations: chosen rows, actions, and the published fingerprint.
+
+    Example: kitchen-prefs robot verify --root=drawers-human-v1
+    """
+    from kitchen_prefs_robot.demonstrations.storage import NAME
+    from kitchen_prefs_robot.demonstrations.verification import verify_demonstrations
+
+    for claim in verify_demonstrations(NAME, root or dataset_root(NAME)):
+        typer.echo(claim)
