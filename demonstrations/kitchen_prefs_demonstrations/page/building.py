@@ -2,6 +2,7 @@
 
 import base64
 from importlib.resources import files
+from importlib.util import find_spec
 from typing import Any
 
 from kitchen_prefs.simulation.sessions import Session, make_session
@@ -9,18 +10,22 @@ from kitchen_prefs.splits import DATA_VERSION
 from kitchen_prefs.web.kitchen_data import layout_data
 from kitchen_prefs.web.page import SHARED, joined, self_contained_page
 from kitchen_prefs_demonstrations.kitchens import page_sessions, study_session
-from kitchen_prefs_demonstrations.page.kitchen_gltf import (
-    SCRIPTS_3D,
-    STYLE_3D,
-    THREE_FOLDER,
-    kitchen_glb,
-)
 from kitchen_prefs_demonstrations.page.observation_data import observed_kitchen, observed_session
 from kitchen_prefs_demonstrations.page.policy_data import policy_data, policy_script
 from kitchen_prefs_experiments.checkpoints import find_checkpoint
 
 TEMPLATES = files("kitchen_prefs_demonstrations.page") / "templates"
+THREE = files("kitchen_prefs_demonstrations.page") / "three"
 SHARED_SCRIPTS = ("basics.js", "kitchen.js", "replay.js", "drawing.js")
+THREE_SCRIPTS = (
+    "three.min.js",
+    "model3d.js",
+    "stage3d.js",
+    "motion3d.js",
+    "picking3d.js",
+    "hints3d.js",
+    "kitchen3d.js",
+)
 SCRIPTS = (
     "kitchens.js",
     "study.js",
@@ -39,11 +44,12 @@ SALT = 1
 KITCHENS = 12  # to show in, and as many to load
 INCOMPLETE = range(7)  # of the first user's sessions each lacks another category
 CONSENT = (
-    "You load a dishwasher on this page, twice in all, on different days. The file that results "
-    "holds your choices, your code and the day, and nothing else about you; it is kept for the "
-    "study STUDY and may be published without your code. You may stop at any time, and nothing "
-    "leaves this page before you hand the file in."
-)
+    "We record which dish you put where and in which order, with your code and the number of the "
+    "day: no name, no time, no address and no picture. The recordings are kept for the study "
+    "STUDY, used for research on robots that learn preferences, and published. Taking part is "
+    "voluntary; you may stop at any time without a reason. By starting you say that you are 18 or "
+    "older, have read this, and agree."
+)  # docs/study.md has the whole text
 
 
 def demonstration_page(study: str | None = None, save_to: str | None = None) -> str:
@@ -60,13 +66,13 @@ def demonstration_page(study: str | None = None, save_to: str | None = None) -> 
     scripts = (
         joined(*(SHARED / name for name in SHARED_SCRIPTS)),
         policy_script(),
-        joined(*(THREE_FOLDER / name for name in SCRIPTS_3D)),
+        joined(*(THREE / name for name in THREE_SCRIPTS)),
         joined(*(TEMPLATES / name for name in SCRIPTS)),
     )
     return self_contained_page(
         template=joined(TEMPLATES / "page.html"),
         style=joined(
-            *(SHARED / name for name in STYLES), THREE_FOLDER / STYLE_3D, TEMPLATES / "page.css"
+            *(SHARED / name for name in STYLES), THREE / "kitchen3d.css", TEMPLATES / "page.css"
         ),
         script="\n".join(scripts),
         data=page_data(study, save_to),
@@ -91,11 +97,20 @@ def page_data(study: str | None, save_to: str | None) -> dict[str, Any]:
         "kitchens": {use: [_kitchen_data(one) for one in of] for use, of in kitchens.items()},
         "policy": policy_data(find_checkpoint(CHECKPOINT)),
         "aboutPolicy": f"TTP's checkpoint {CHECKPOINT}, trained on the ways of others alone.",
-        "glb": base64.b64encode(kitchen_glb()).decode(),
+        "glb": _kitchen_in_three_dimensions(),
         "study": study,
         "saveTo": save_to,
         "consent": CONSENT,
     }
+
+
+def _kitchen_in_three_dimensions() -> str | None:
+    """The kitchen's .glb file in base64; None without MuJoCo, where the drawing is all there is."""
+    if find_spec("mujoco") is None:
+        return None
+    from kitchen_prefs_demonstrations.page.kitchen_gltf import kitchen_glb
+
+    return base64.b64encode(kitchen_glb()).decode()
 
 
 def _kitchen_data(session: Session) -> dict[str, Any]:

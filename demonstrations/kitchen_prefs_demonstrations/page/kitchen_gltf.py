@@ -13,7 +13,6 @@ The kitchen's z is up and glTF's is not: the node "kitchen" turns it.
 """
 
 from collections import defaultdict
-from importlib.resources import files
 from math import sqrt
 
 import mujoco
@@ -30,19 +29,6 @@ from kitchen_prefs.rendering.tableware import GLAZES, TRAY_MATERIAL, colour, sur
 from kitchen_prefs.simulation import layout
 from kitchen_prefs.simulation.placements import load_placements
 from kitchen_prefs_demonstrations.page.glb_writing import GlbWriter
-
-THREE_FOLDER = files("kitchen_prefs_demonstrations.page") / "three"
-# Joined in this order, after basics.js and kitchen.js of `kitchen_prefs.web`.
-SCRIPTS_3D = (
-    "three.min.js",
-    "model3d.js",
-    "stage3d.js",
-    "motion3d.js",
-    "picking3d.js",
-    "hints3d.js",
-    "kitchen3d.js",
-)
-STYLE_3D = "kitchen3d.css"
 
 DISH_SIDES = 36  # facets round a dish: none is seen at the nearest that the camera goes
 BAR_SIDES = 6  # facets round a wire or a handle, of which there are 200

@@ -16,12 +16,8 @@ from kitchen_prefs.simulation.layout import RACK_TRAVEL, SINK_POSITION
 from kitchen_prefs.simulation.sessions import make_session
 from kitchen_prefs.web.kitchen_data import layout_data, session_data
 from kitchen_prefs.web.page import SHARED, joined, self_contained_page
-from kitchen_prefs_demonstrations.page.kitchen_gltf import (
-    SCRIPTS_3D,
-    STYLE_3D,
-    THREE_FOLDER,
-    kitchen_glb,
-)
+from kitchen_prefs_demonstrations.page.building import THREE, THREE_SCRIPTS
+from kitchen_prefs_demonstrations.page.kitchen_gltf import kitchen_glb
 
 CHROMIUM = Path("/usr/bin/chromium")
 PATIENCE = 120_000  # milliseconds; the machine may be busy
@@ -55,9 +51,9 @@ def page(tmp_path_factory):
         "session": session_data(SESSION),
         "glb": base64.b64encode(kitchen_glb()).decode(),
     }
-    scripts = [THREE_FOLDER / name for name in SCRIPTS_3D]
+    scripts = [THREE / name for name in THREE_SCRIPTS]
     script = joined(SHARED / "basics.js", SHARED / "kitchen.js", *scripts, EXAMPLE)
-    style = joined(SHARED / "house.css", THREE_FOLDER / STYLE_3D)
+    style = joined(SHARED / "house.css", THREE / "kitchen3d.css")
     file.write_text(self_contained_page(TEMPLATE, style, script, data))
     with sync_playwright() as driver:
         browser = driver.chromium.launch(

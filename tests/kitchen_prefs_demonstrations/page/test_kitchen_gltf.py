@@ -14,12 +14,8 @@ from kitchen_prefs.rendering.tableware import colour
 from kitchen_prefs.simulation.layout import EXTENTS, RACK_TRAVEL
 from kitchen_prefs.simulation.placements import load_placements
 from kitchen_prefs.web.page import joined
-from kitchen_prefs_demonstrations.page.kitchen_gltf import (
-    SCRIPTS_3D,
-    STYLE_3D,
-    THREE_FOLDER,
-    kitchen_glb,
-)
+from kitchen_prefs_demonstrations.page.building import THREE, THREE_SCRIPTS
+from kitchen_prefs_demonstrations.page.kitchen_gltf import kitchen_glb
 
 SMALL_ENOUGH = 2_000_000  # bytes of everything that the third dimension adds to the page
 
@@ -73,7 +69,7 @@ def test_everything_lies_within_the_file(content, glb):
 
 
 def test_the_third_dimension_is_small(glb):
-    scripts = joined(*(THREE_FOLDER / name for name in (*SCRIPTS_3D, STYLE_3D)))
+    scripts = joined(*(THREE / name for name in (*THREE_SCRIPTS, "kitchen3d.css")))
     assert len(scripts.encode()) + len(base64.b64encode(glb)) < SMALL_ENOUGH
     assert "</script" not in scripts.lower()
     assert "<!--" not in scripts
