@@ -28,9 +28,9 @@ SESSIONS = {
     "unseen_preferences": (0, 1, 2),
     "many_preferences": (0, 1, 2),
 }
-TOLERANCE = 1e-3  # of probabilities
-# Of their logarithms, which reach -100: the same network in float64 differs by .01 from float32.
-TOLERANCE_OF_LOGARITHMS = 0.02
+# Of log-probabilities, which reach -100. float32, in which Python computes, is no finer: the same
+# network in float64 differs from it by .01.
+TOLERANCE = 0.02
 # Observes, decides and carries out whole episodes; as texts, lists cross over much faster.
 EPISODES = """(asked) => {
     const ttp = new TTP(data.policy);
@@ -160,14 +160,12 @@ def test_the_same_decisions_are_refused(episodes):
     assert sum(map(sum, refused[0])) >= 10
 
 
-def test_every_candidate_has_the_same_probability(episodes):
+def test_every_candidate_has_the_same_log_probability(episodes):
     in_python, in_the_browser = episodes
     for one, other in zip(chain(*in_python), chain(*in_the_browser), strict=True):
         assert one["scores"].keys() == other["scores"].keys()
         for instance, score in one["scores"].items():
-            found = other["scores"][instance]
-            assert np.exp(found) == pytest.approx(np.exp(score), abs=TOLERANCE)
-            assert found == pytest.approx(score, abs=TOLERANCE_OF_LOGARITHMS)
+            assert other["scores"][instance] == pytest.approx(score, abs=TOLERANCE)
 
 
 def test_attention_is_shared_among_the_decisions_of_the_demonstration(episodes):
