@@ -5,6 +5,8 @@ import json
 import numpy as np
 import pytest
 from chromium import bare_page, needs_chromium
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
 
 from kitchen_prefs.simulation import kitchen as k
 from kitchen_prefs.simulation.expert import KitchenView, choose
@@ -121,6 +123,36 @@ def test_arbitrary_decisions_change_the_same_or_are_refused_in_the_same_words(pa
     assert len(all_told) > 4000
     assert len({refusal for refusal, *_ in all_told}) == 7  # every sentence, and none
     assert sum(state[9] for state in all_told) > 10  # finished sessions
+
+
+EXPERT = -2  # in the place of a decision: what the expert would decide now
+PLACEMENTS = len(k.placement_table().category)
+DECISIONS = st.lists(
+    st.one_of(
+        st.just(EXPERT),
+        st.integers(-1, k.FIRST_DISH + 20),
+        st.just(k.SINK),
+        st.integers(k.FIRST_PLACEMENT["bottom"], k.FIRST_PLACEMENT["bottom"] + PLACEMENTS),
+        st.integers(k.FIRST_PLACEMENT["top"], k.FIRST_PLACEMENT["top"] + PLACEMENTS),
+    ),
+    max_size=60,
+)
+
+
+@settings(max_examples=30, deadline=None, suppress_health_check=list(HealthCheck))
+@given(split=st.sampled_from(SPLITS), index=st.integers(0, SESSIONS_OF_EACH - 1), asked=DECISIONS)
+def test_any_decisions_do_the_same(page, split, index, asked):
+    session = make_session(split, index)
+    kitchen = Kitchen(session.dishes)
+    view = KitchenView(kitchen)
+    decisions, told = [], []
+    for instance in asked:
+        if kitchen.finished:
+            break
+        decisions.append(int(choose(view, session.preference)) if instance == EXPERT else instance)
+        told.append([kitchen.decide(decisions[-1]), *state_of(kitchen)])
+    trials = json.dumps([(session_data(session), decisions)])
+    assert json.loads(page.evaluate(CARRY_OUT, trials)) == [told]
 
 
 def test_the_experts_decisions_are_not_refused_and_finish_the_session(page):
