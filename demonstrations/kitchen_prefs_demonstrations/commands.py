@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from kitchen_prefs_demonstrations.importing import ImportedEpisode
     from kitchen_prefs_demonstrations.replaying import ReplayedDemonstration
 
-demonstrate = typer.Typer(name="demonstrate", help="Show it your way: the page.")
+demonstrate = typer.Typer(name="demonstrate")
 demonstrations = typer.Typer(
     name="demonstrations",
     help="Demonstrations of people: data sets, and how far people agree.",
@@ -38,7 +38,7 @@ StudyName = Annotated[
 def serve(
     context: typer.Context,
     out: Annotated[Path, typer.Option(help="Where demonstrations are saved.")] = Path(
-        "demonstrations"
+        "outputs/demonstrations"
     ),
     port: Annotated[int, typer.Option(help="The port on this machine.", min=0, max=65535)] = 8765,
     study: StudyName = None,
@@ -97,7 +97,7 @@ def import_files(
     data set stays with you.
 
     For example:
-    kitchen-prefs demonstrations import demonstrations/*.json --name=my_kitchen
+    kitchen-prefs demonstrations import outputs/demonstrations/*.json --name=my_kitchen
     """
     from kitchen_prefs_demonstrations.importing import import_demonstrations
 

@@ -32,10 +32,7 @@ def files(tmp_path_factory):
     ]
     contents = [
         *(content_of(sessions[i], preferences[i], user=f"user {i}") for i in (0, 1)),
-        *(
-            content_of(s, preferences[2], decisions=d)
-            for s, d in zip(sessions[2:], slips, strict=True)
-        ),
+        *slips,
         content_of(sessions[0], preferences[0], user=None),
     ]
     contents[4]["decisions"] = contents[4]["decisions"][:4]

@@ -48,6 +48,11 @@ def test_on_many_preferences_the_preferences_are_resampled():
     assert sampled.high - sampled.low == pytest.approx(2 * 1.96 * 0.25 / 40**0.5, rel=0.15)
 
 
+def test_of_one_preference_the_sessions_are_resampled():
+    interval = summarise(spread("many_preferences", {7: [True, False] * 20}), packing_efficiency)
+    assert interval.low < interval.mean < interval.high
+
+
 def test_single_sessions_do_not_make_an_interval_vanish():
     interval = summarise(spread("seen", {0: [True], 1: [False], 2: [True]}), packing_efficiency)
     assert interval.low < interval.mean < interval.high
