@@ -6,6 +6,8 @@ from pathlib import Path
 from shutil import copytree
 
 import pytest
+import torch
+from safetensors.torch import load, load_file
 
 from kitchen_prefs_demonstrations.page.policy_data import policy_data
 
@@ -15,9 +17,13 @@ pytestmark = pytest.mark.lerobot
 
 
 @pytest.mark.parametrize("name", ["ttp_plus", "ttp_quick"])
-def test_the_weights_are_the_checkpoints_own(name):
-    weights = base64.b64decode(policy_data(CHECKPOINTS / name)["weights"])
-    assert weights == (CHECKPOINTS / name / "model.safetensors").read_bytes()
+def test_the_weights_are_the_checkpoints_own_in_half_precision(name):
+    weights = load(base64.b64decode(policy_data(CHECKPOINTS / name)["weights"]))
+    own = load_file(CHECKPOINTS / name / "model.safetensors")
+    assert weights.keys() == own.keys()
+    for weight, values in weights.items():
+        assert torch.equal(values, own[weight].to(values.dtype)), weight
+        assert values.dtype == (torch.float16 if weight.startswith("network.") else torch.float32)
 
 
 def test_other_settings_are_refused():
