@@ -5,6 +5,7 @@ turn takes the place of the expert, and both directions are averaged. No policy 
 demonstration of a user can be expected to agree with the next one better than the user does.
 """
 
+from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import combinations
@@ -40,9 +41,11 @@ def agreement(demonstrations: Sequence[ReplayedDemonstration]) -> Agreement:
         demonstrations: Of several users, each with a name or a participant's code.
 
     Raises:
-        ValueError: If one names no user, or if no two are of the same kitchen.
+        ValueError: If one names no user, if two are of one participant's same day, or if no two are
+            of the same kitchen.
     """
     users = _numbered_users(demonstrations)
+    _check_days(demonstrations)
     traits = [traits_of(demonstration) for demonstration in demonstrations]
     compared: dict[tuple[int, int], list[Comparison]] = {}
     for (one, mine), (other, yours) in combinations(zip(demonstrations, traits, strict=True), 2):
@@ -72,6 +75,14 @@ def _numbered_users(demonstrations: Iterable[ReplayedDemonstration]) -> dict[str
             )
         users.setdefault(demonstration.file.who, len(users))
     return users
+
+
+def _check_days(demonstrations: Iterable[ReplayedDemonstration]) -> None:
+    """Two of one day say nothing of how far a participant agrees with herself on another."""
+    days = Counter((one.file.who, one.file.study.day) for one in demonstrations if one.file.study)
+    for (who, day), count in days.items():
+        if count > 1:
+            raise ValueError(f"{who} has {count} demonstrations of day {day}; leave one of them.")
 
 
 def _kitchen(demonstration: ReplayedDemonstration) -> tuple[str, int, int]:

@@ -51,11 +51,13 @@ def serve(
     kitchen-prefs demonstrate --out=study --study=kitchen-2027
     """
     if context.invoked_subcommand:
+        if study is not None:
+            raise ValueError("--study belongs after `demonstrate page`, not before `page`.")
         return
     from kitchen_prefs_demonstrations.serving import SAVE_TO, DemonstrationServer
 
-    make_folder(out, "--out")
     html = _page(study, SAVE_TO)
+    make_folder(out, "--out")
     with at_work_alone(out), DemonstrationServer(html, out, port, _print_saved) as server:
         console.print(f"The page is at {server.address}; demonstrations go to {out}.")
         try:
@@ -76,8 +78,8 @@ def write_page(
     """
     if out.is_dir():
         raise ValueError(f"{out} is a folder; give --out a file in it.")
-    make_folder(out.parent, "--out")
     html = _page(study, None)
+    make_folder(out.parent, "--out")
     with atomic_file(out) as unfinished:
         unfinished.write_text(html)
     console.print(f"The page is {out}; a browser opens it without a server.")

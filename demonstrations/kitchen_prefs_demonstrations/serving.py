@@ -1,7 +1,8 @@
 """Serves the page on this machine and saves each demonstration that it sends.
 
-    GET  /                the page
-    POST /demonstrations  a demonstration's JSON, which becomes FOLDER/demonstration-0001.json
+    GET  /                     the page
+    POST /demonstrations       a demonstration's JSON, which becomes FOLDER/demonstration-0001.json
+    POST /demonstrations/FILE  the same demonstration with another name or consent
 
 It listens on the loopback interface alone. A page of another origin can send requests there, too,
 also by a host name of its own that points here; so Host and Origin must be this server's.
@@ -9,6 +10,7 @@ also by a host name of its own that points here; so Host and Origin must be this
 
 import errno
 import json
+import re
 import sys
 import threading
 from collections.abc import Callable
@@ -19,13 +21,17 @@ from typing import Any
 
 from kitchen_prefs_demonstrations.file_format import (
     MOST_BYTES,
+    DemonstrationFile,
     parse_demonstration,
+    read_demonstration,
     write_demonstration,
 )
 from kitchen_prefs_demonstrations.replaying import ReplayedDemonstration, replay
 
 LOOPBACK = "127.0.0.1"
 SAVE_TO = "demonstrations"  # the address that the page posts to, relative to its own
+POSTED = re.compile(rf"/{SAVE_TO}(?:/(demonstration-[0-9]{{4,9}}\.json))?")
+MAY_CHANGE = {"user", "consent"}  # of a demonstration that is saved
 PATIENCE = 10  # seconds to wait for a request that has begun
 
 Progress = Callable[[Path, ReplayedDemonstration], None]
@@ -68,17 +74,24 @@ class DemonstrationServer(ThreadingHTTPServer):
         """The page's address."""
         return f"http://{self.hosts[0]}/"
 
-    def save(self, content: bytes) -> Path:
-        """Save a demonstration under the next free number.
+    def save(self, content: bytes, name: str | None) -> Path:
+        """Save a demonstration.
+
+        Args:
+            content: Its JSON.
+            name: The file whose name or consent it changes; None saves it under the next free
+                number.
 
         Raises:
-            ValueError: If it is none.
+            ValueError: If it is none, or another one than the file's.
             OSError: If it cannot be written.
         """
         demonstration = parse_demonstration(content, "The demonstration")
         replayed = replay(demonstration, "The demonstration")
         with self._saving:
-            file = _next_file(self._folder)
+            file = self._folder / name if name else _next_file(self._folder)
+            if name:
+                _check_same(demonstration, read_demonstration(file), name)
             write_demonstration(demonstration, file)
             self._on_saved(file, replayed)
         return file
@@ -93,6 +106,11 @@ def _next_file(folder: Path) -> Path:
     numbers = [file.stem.rpartition("-")[2] for file in folder.glob("demonstration-*.json")]
     last = max((int(number) for number in numbers if number.isdecimal()), default=0)
     return folder / f"demonstration-{last + 1:04}.json"
+
+
+def _check_same(one: DemonstrationFile, other: DemonstrationFile, name: str) -> None:
+    if one.model_dump(exclude=MAY_CHANGE) != other.model_dump(exclude=MAY_CHANGE):
+        raise ValueError(f"{name} holds another demonstration.")
 
 
 class _Refused(Exception):  # noqa: N818  it is an answer, not an error of the server
@@ -136,21 +154,23 @@ class _Handler(BaseHTTPRequestHandler):
         return HTTPStatus.OK, "text/html", self.server.page
 
     def _save(self) -> tuple[HTTPStatus, str, bytes]:
-        if self.path != f"/{SAVE_TO}":
+        posted = POSTED.fullmatch(self.path)
+        if not posted:
             raise _Refused(HTTPStatus.NOT_FOUND, f"Demonstrations go to /{SAVE_TO}.")
         if self.headers.get("Origin") != f"http://{self.headers.get('Host')}":
             raise _Refused(HTTPStatus.FORBIDDEN, "Only the page itself may send demonstrations.")
         if self.headers.get_content_type() != "application/json":
             raise _Refused(HTTPStatus.UNSUPPORTED_MEDIA_TYPE, "A demonstration is JSON.")
         try:
-            return HTTPStatus.CREATED, "application/json", _json(file=self._saved_file().name)
+            file = self._saved_file(posted[1])
+            return HTTPStatus.CREATED, "application/json", _json(file=file.name)
         except ValueError as error:
             raise _Refused(HTTPStatus.BAD_REQUEST, str(error)) from error
         except OSError as error:
             sentence = f"The demonstration could not be saved: {error.strerror}."
             raise _Refused(HTTPStatus.INTERNAL_SERVER_ERROR, sentence) from error
 
-    def _saved_file(self) -> Path:
+    def _saved_file(self, name: str | None) -> Path:
         length = self.headers.get("Content-Length", "")
         if not length.isascii() or not length.isdecimal():
             raise _Refused(HTTPStatus.LENGTH_REQUIRED, "A demonstration comes with its length.")
@@ -163,7 +183,7 @@ class _Handler(BaseHTTPRequestHandler):
             raise _Refused(HTTPStatus.REQUEST_TIMEOUT, "The demonstration did not come.") from error
         if len(content) < int(length):
             raise _Refused(HTTPStatus.BAD_REQUEST, "The demonstration is shorter than it says.")
-        return self.server.save(content)
+        return self.server.save(content, name)
 
     def _check_host(self) -> None:
         if self.headers.get("Host") not in self.server.hosts:

@@ -89,5 +89,7 @@ def test_what_cannot_be_compared_is_said(steady):
     nameless = replace(steady[0], file=steady[0].file.model_copy(update={"study": None}))
     with pytest.raises(ValueError, match="names neither a user nor a participant"):
         agreement([nameless, steady[1]])
+    with pytest.raises(ValueError, match="test/p0 has 2 demonstrations of day 1; leave one"):
+        agreement([steady[0], *steady])
     with pytest.raises(ValueError, match="No two demonstrations start in the same kitchen"):
         agreement(steady[:1])

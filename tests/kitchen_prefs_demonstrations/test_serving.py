@@ -64,6 +64,24 @@ def test_each_demonstration_is_a_file_at_once(server, tmp_path, content):
     assert [replayed.finished for _, replayed in server.saved] == [True, True]
 
 
+def test_name_and_consent_of_a_saved_demonstration_may_change_and_nothing_else(
+    server, tmp_path, content
+):
+    ask(server, "POST", "/demonstrations", json.dumps(content).encode())
+    file = "demonstration-0001.json"
+    renamed = content | {"user": "Bo", "consent": False}
+    status, _ = ask(server, "POST", f"/demonstrations/{file}", json.dumps(renamed).encode())
+    assert status == 201
+    assert read_demonstration(tmp_path / file).model_dump() == renamed
+    other = content | {"decisions": content["decisions"][:4]}
+    status, body = ask(server, "POST", f"/demonstrations/{file}", json.dumps(other).encode())
+    assert (status, json.loads(body)) == (400, {"error": f"{file} holds another demonstration."})
+    missing = "/demonstrations/demonstration-0002.json"
+    assert ask(server, "POST", missing, json.dumps(content).encode())[0] == 400
+    assert files(tmp_path) == [file]
+    assert read_demonstration(tmp_path / file).model_dump() == renamed
+
+
 def test_many_at_once_are_all_kept(server, tmp_path, content):
     body = json.dumps(content).encode()
     threads = [
@@ -109,7 +127,15 @@ def test_the_page_is_not_shown_under_another_name(server):
     assert PAGE not in body
 
 
-@pytest.mark.parametrize("path", ["/demonstrations/../x", "/../../etc/passwd", "/index.html"])
+@pytest.mark.parametrize(
+    "path",
+    [
+        "/demonstrations/../x",
+        "/demonstrations/demonstration-0001.json/../x",
+        "/../../etc/passwd",
+        "/index.html",
+    ],
+)
 def test_there_is_nothing_else(server, path):
     assert ask(server, "GET", path)[0] == 404
     assert ask(server, "POST", path, b"{}")[0] == 404

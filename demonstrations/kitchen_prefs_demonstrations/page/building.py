@@ -5,6 +5,8 @@ from importlib.resources import files
 from importlib.util import find_spec
 from typing import Any
 
+from kitchen_prefs.envs.environment import MAX_EPISODE_STEPS
+from kitchen_prefs.instances import PROMPT_CAPACITY
 from kitchen_prefs.simulation.sessions import Session, make_session
 from kitchen_prefs.splits import DATA_VERSION
 from kitchen_prefs.web.kitchen_data import layout_data
@@ -29,6 +31,7 @@ THREE_SCRIPTS = (
 SCRIPTS = (
     "kitchens.js",
     "study.js",
+    "choices.js",
     "stage.js",
     "implied.js",
     "keeping.js",
@@ -92,6 +95,7 @@ def page_data(study: str | None, save_to: str | None) -> dict[str, Any]:
     }
     return {
         "version": DATA_VERSION,
+        "most": {"decisions": MAX_EPISODE_STEPS, "rows": PROMPT_CAPACITY},
         "layout": layout_data(),
         "observed": observed_kitchen(),
         "kitchens": {use: [_kitchen_data(one) for one in of] for use, of in kitchens.items()},

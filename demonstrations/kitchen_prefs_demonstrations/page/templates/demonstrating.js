@@ -6,57 +6,84 @@ const you = {
   steps: [], // as `replay` gives them: the state at the start and after each decision
   decisions: [], // what the kitchen carried out
   refused: 0,
-  shown: [], // finished demonstrations: what TTP is prompted with
+  shown: [], // finished demonstrations: what TTP is prompted with; `file` once it is saved
 };
 
 const yourState = () => you.steps.at(-1).state;
 
-function startDemonstration(kitchen, decisions = []) {
+function startDemonstration(kitchen, decisions = [], refused = 0) {
   you.kitchen = kitchen;
   you.decisions = decisions;
   you.steps = replay(kitchen, decisions, []);
-  you.refused = 0;
+  you.refused = refused;
+  remember();
   showYou("");
+}
+
+/** Begin anew in the same kitchen; what is finished there no longer counts. */
+function startAgain() {
+  if (isFinished(yourState())) {
+    you.shown.pop();
+    stopWatching();
+  }
+  startDemonstration(you.kitchen);
 }
 
 /** Carry out the visitor's choice, or say why not. */
 function youChoose(instance) {
   if (isFinished(yourState())) return;
   const before = yourState();
-  const state = structuredClone(before);
-  const [text, kind] = [inWords(before, instance), kindOf(before, instance)];
-  const reason = decide(state, instance);
+  const reason = refusal(before, instance) || whyTooLong();
   if (reason !== "") {
     you.refused += 1;
     showYou(reason, true);
     return;
   }
+  const state = structuredClone(before);
+  const [text, kind] = [inWords(before, instance), kindOf(before, instance)];
+  carryOut(state, instance);
   you.decisions.push(instance);
   you.steps.push({ state, text, kind, refused: false });
   remember();
+  if (isFinished(state)) finishDemonstration();
   showYou([text.replace(/^./, (first) => first.toUpperCase()), arrivalIn(before, state)]
     .filter(Boolean).join(". "));
-  if (isFinished(state)) finishDemonstration();
 }
+
+/** Why no decision can follow, or an empty string: a prompt has room for so many. */
+function whyTooLong() {
+  const fits = you.decisions.length < data.most.decisions && rowsRead(you.steps) <= data.most.rows;
+  if (fits) return "";
+  return "That is more than a policy reads of one demonstration: Undo takes back what was in vain.";
+}
+
+/** How many rows a prompt has for the decisions that are taken in these states. */
+const rowsRead = (steps) =>
+  steps.reduce((sum, { state }) => sum + observe(state, you.kitchen, 0).ids.length, 0);
 
 function undo() {
   if (you.decisions.length === 0 || isFinished(yourState())) return;
   you.decisions.pop();
   you.steps.pop();
   remember();
+  const pressed = document.activeElement === byId("undo");
   showYou("Taken back");
+  if (pressed && byId("undo").disabled) byId("you").focus();
 }
 
-/** Put a dish back that has only been picked. */
-function putBack(event) {
+/** Escape puts a dish back that has only been picked, U takes any decision back. */
+function takeBack(event) {
+  if (event.target instanceof HTMLInputElement) return; // who types a name decides nothing
   if (event.key === "Escape" && yourState().held !== null) undo();
   else if (event.key.toLowerCase() === "u" && !event.ctrlKey && !event.metaKey) undo();
 }
 
 function finishDemonstration() {
-  you.shown.push({ session: you.kitchen, decisions: [...you.decisions] });
+  const { kitchen: session, decisions, refused } = you;
+  you.shown.push({ session, decisions: [...decisions], refused });
   remember();
-  keepDemonstration();
+  byId("kept").textContent = "";
+  save();
   if (!study.name) startWatching(you.shown.length > 1 ? kitchens.next("load") : ttp.kitchen);
 }
 
@@ -71,6 +98,8 @@ function showYou(says, refused = false) {
   byId("you-timeline").replaceChildren(
     drawTimeline(you.steps, you.decisions.length, Math.max(you.decisions.length, 40)));
   byId("undo").disabled = you.decisions.length === 0 || isFinished(state);
+  byId("again").disabled = isFinished(state) && study.name !== null; // one demonstration a day
+  byId("keep").hidden = you.shown.length === 0;
 }
 
 /** What arrived with the last action, in words. */
@@ -89,7 +118,7 @@ function countsOf(state, decisions) {
 
 /** What a visitor may do next. */
 function hintFor(state) {
-  if (isFinished(state)) return study.name ? "Finished. Thank you." : "Finished. Now watch TTP.";
+  if (isFinished(state)) return hintAtTheEnd();
   if (state.held !== null) return hintWithDish(state);
   if (counterDishes(state).length === 0) {
     if (state.out !== null) return "Push the rack in.";
@@ -98,6 +127,12 @@ function hintFor(state) {
   if (!state.doorOpen) return "Open the door: click the bar at the bottom.";
   if (state.out === null) return "Pull out a rack.";
   return "Pick a dish, or push the rack in.";
+}
+
+function hintAtTheEnd() {
+  if (!study.name) return "Finished. Now watch TTP.";
+  const thanks = "Finished. Thank you.";
+  return data.saveTo ? thanks : `${thanks} Please download the file and send it back.`;
 }
 
 function hintWithDish(state) {

@@ -12,8 +12,13 @@ const kitchens = {
     return kitchen;
   },
 
-  numberOf(kitchen) {
-    return this.all.indexOf(kitchen);
+  /** A name that a kitchen has in every page that shows it. */
+  nameOf({ split, index, salt }) {
+    return [data.version, split, index, salt].join(" ");
+  },
+
+  named(name) {
+    return this.all.find((kitchen) => this.nameOf(kitchen) === name);
   },
 
   /** The categories of which a kitchen has no dish. */

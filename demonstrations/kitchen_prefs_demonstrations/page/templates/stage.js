@@ -49,7 +49,9 @@ class Stage {
     if (event.altKey || event.ctrlKey || event.metaKey) return;
     const instance = instanceOf(event.target);
     if (instance === null) return;
-    if (event.key === "Enter" || event.key === " ") this.onChoose(instance);
+    if (event.key === "Enter" || event.key === " ") {
+      if (!event.repeat) this.onChoose(instance); // a key held down is one choice
+    }
     else if (event.key in DIRECTIONS) this.moveFocus(event.target, DIRECTIONS[event.key]);
     else return;
     event.preventDefault();
@@ -136,29 +138,6 @@ function nearestPlacement(state, x, y) {
   return FIRST_PLACEMENT[state.out] + meant.placement;
 }
 
-/** What can be chosen now, blocked placements included. */
-function choicesIn(state) {
-  if (state.held === null) {
-    return [DOOR, TOP_RACK, BOTTOM_RACK, ...counterDishes(state).map((i) => FIRST_DISH + i)];
-  }
-  return [SINK, ...placementsInHand(state).map((one) => FIRST_PLACEMENT[state.out] + one)];
-}
-
-/** Where the focus goes when what it was on is gone. */
-function nextChoice(state) {
-  if (state.held !== null) {
-    if (state.out === null) return SINK;
-    const [free] = freePlacements(state, state.out, state.dishes[state.held].category);
-    return free === undefined ? SINK : FIRST_PLACEMENT[state.out] + free;
-  }
-  const [dish] = counterDishes(state);
-  if (state.out !== null) {
-    const rack = state.out === "top" ? TOP_RACK : BOTTOM_RACK;
-    return dish === undefined ? rack : FIRST_DISH + dish;
-  }
-  return state.doorOpen && dish !== undefined ? TOP_RACK : DOOR;
-}
-
 function makeButton(element, state, instance) {
   const blocked = element.classList.contains("blocked");
   fill(element, {
@@ -187,28 +166,4 @@ function drawGhost(state, placement) {
     class: `dish ghost d${category}`,
     transform: `translate(${x.toFixed(1)},${y.toFixed(1)}) rotate(${-angle}) scale(${zoom})`,
   }, ...dishShape(category, a, b));
-}
-
-/** An instance in the words of a screen reader. */
-function nameOf(state, instance) {
-  if (instance === DOOR) return state.doorOpen ? "door, open" : "door, closed";
-  if (instance === SINK) return "sink";
-  if (instance in RACK_OF) {
-    return `${RACK_OF[instance]} rack, ${state.out === RACK_OF[instance] ? "out" : "in"}`;
-  }
-  if (instance < FIRST_PLACEMENT.bottom) {
-    return `${data.layout.categories[state.dishes[instance - FIRST_DISH].category]}, on the counter`;
-  }
-  const placement = instance - FIRST_PLACEMENT[state.out];
-  const taken = isBlocked(state, state.out, placement) ? "blocked" : "free";
-  return `${taken} place, ${regionOf(placement)} of the ${state.out} rack`;
-}
-
-/** Where in a rack a placement is, in thirds. */
-function regionOf(placement) {
-  const [, x, y] = data.layout.placements[placement];
-  const [wide, deep] = data.layout.rack;
-  const third = (share) => Math.min(Math.floor((share + 0.5) * 3), 2);
-  return `${["front", "middle", "back"][third(y / deep)]} ${
-    ["left", "centre", "right"][third(x / wide)]}`;
 }

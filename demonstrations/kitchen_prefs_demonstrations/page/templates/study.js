@@ -19,7 +19,8 @@ function startStudy() {
     study.day = Number(byId("day").value);
     byId("consent").hidden = true;
     byId("stages").hidden = false;
-    startDemonstration(kitchens.next("study"));
+    goOn(remembered(), "study");
+    byId("you").focus();
   });
 }
 

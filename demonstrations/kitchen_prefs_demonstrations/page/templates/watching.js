@@ -22,7 +22,18 @@ function showWhatWaits(kitchen) {
   ttp.kitchen = kitchen;
   ttp.steps = replay(kitchen, [], []);
   ttp.decisions = [];
+  for (const id of ["by-rule", "by-attention"]) byId(id).textContent = "\u2014";
+  byId("ttp-ends").textContent = "";
   showTTP("waits for your demonstration");
+}
+
+/** What TTP has read no longer counts. */
+function stopWatching() {
+  pause();
+  ttp.memory = null;
+  byId("score").hidden = true;
+  byId("next").hidden = true;
+  showWhatWaits(ttp.kitchen);
 }
 
 /** Prompt TTP with all that was shown and let it begin. */
@@ -35,6 +46,7 @@ function startWatching(kitchen) {
   byId("score").hidden = true;
   byId("next").hidden = true;
   showWhatWaits(kitchen);
+  remember();
   showTTP(you.shown.length > 1 ? `has read your ${you.shown.length} demonstrations`
     : "has read your demonstration");
   play();
@@ -149,12 +161,15 @@ function showScore() {
   const unseen = ttpState().dishes.filter(({ category }) => ttp.preference.rackOf[category] === null);
   byId("scores").replaceChildren(
     scoreRow("TTP, this counter", ttp.steps, ttp.decisions),
-    scoreRow("You, by your own rule", steps, demonstration.decisions, you.refused));
+    scoreRow("You, by your own rule", steps, demonstration.decisions, demonstration.refused));
   byId("score-note").textContent = unseen.length === 0 ? ""
     : `${unseen.length} dishes of kinds that you have never shown are not counted.`;
   byId("your-way").textContent = ruleInWords(ttp.preference);
   byId("score").hidden = false;
   byId("next").hidden = false;
+  byId("ttp-ends").textContent = "TTP has finished; how well it followed you is in the table below.";
+  const pressed = [byId("play"), byId("step")].includes(document.activeElement);
+  if (pressed) byId("ttp-other").focus(); // those two are disabled now
 }
 
 function scoreRow(name, steps, decisions, refused = steps.filter((step) => step.refused).length) {
