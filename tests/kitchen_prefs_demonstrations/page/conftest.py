@@ -28,3 +28,12 @@ def page(browser, file):
     """The page on a desk."""
     with opened(browser, file, viewport=DESKTOP) as page:
         yield page
+
+
+@pytest.fixture
+def loose_page(browser, file):
+    """The page on a desk, which a test may load again and whose console may speak."""
+    page = browser.new_page(viewport=DESKTOP)
+    page.goto(file.as_uri())
+    yield page
+    page.close()

@@ -92,7 +92,8 @@ def test_undo_by_keyboard_keeps_the_focus(page):
     assert page.evaluate("document.activeElement.id") == "you"
 
 
-def test_u_takes_back_in_three_dimensions_and_is_a_letter_in_a_name(page):
+def test_u_takes_back_in_three_dimensions_and_is_a_letter_in_a_name(loose_page):
+    page = loose_page
     page.click("#three")
     page.evaluate("[DOOR, TOP_RACK].forEach(youChoose)")
     page.focus("#again")

@@ -34,7 +34,8 @@ def test_a_reload_loses_nothing_and_another_tab_is_another_visitor(browser, file
     other.close()
 
 
-def test_a_reload_of_a_second_demonstration_keeps_the_first(page):
+def test_a_reload_of_a_second_demonstration_keeps_the_first(loose_page):
+    page = loose_page
     show(page, TWELVE[8])
     watch(page)
     page.click("#once-more")
@@ -48,7 +49,8 @@ def test_a_reload_of_a_second_demonstration_keeps_the_first(page):
     assert page.evaluate(kitchens)[0] != before[0]
 
 
-def test_a_reload_after_starting_again_starts_again(page):
+def test_a_reload_after_starting_again_starts_again(loose_page):
+    page = loose_page
     click(page, DOOR, TOP_RACK)
     page.click("#again")
     page.reload()
@@ -58,7 +60,8 @@ def test_a_reload_after_starting_again_starts_again(page):
 @pytest.mark.parametrize(
     "change", ["kept.now.kitchen = '0 prompts 1 0'", "kept.now.decisions = [BOTTOM_RACK]"]
 )
-def test_what_another_page_kept_does_not_break_this_one(page, change):
+def test_what_another_page_kept_does_not_break_this_one(loose_page, change):
+    page = loose_page
     click(page, DOOR, TOP_RACK)
     page.evaluate(f"""() => {{
         const kept = JSON.parse(sessionStorage.getItem(storeName()));

@@ -38,7 +38,7 @@ def test_a_study_asks_first_and_shows_no_policy(browser, file, tmp_path):
     assert not page.locator("#other-counter").is_visible()  # everybody loads the same kitchen
     show(page, TWELVE[8])
     assert page.locator("#again").is_disabled()
-    assert "Download" in page.locator("#you-hint").inner_text()
+    assert "download the file" in page.locator("#you-hint").inner_text()
     with page.expect_download() as download:
         page.click("#download")
     saved = json.loads(download.value.path().read_text())
