@@ -2,7 +2,7 @@
 
 A fresh one takes four seconds to import what LeRobot needs, and the tests start dozens. LeRobot,
 `datasets` and `huggingface_hub` are not imported beforehand: they read the environment when they
-are.
+are. Nor is torch-geometric, which imports the last of them where transformers is installed.
 """
 
 import multiprocessing
@@ -14,7 +14,7 @@ import tempfile
 from pathlib import Path
 
 SLOW_TO_IMPORT = [
-    *("torch", "torch._dynamo", "torch.distributed", "torchvision", "torch_geometric.nn"),
+    *("torch", "torch._dynamo", "torch.distributed", "torchvision"),
     *("pandas", "pyarrow.dataset", "scipy.spatial.transform", "stable_baselines3", "av"),
 ]
 

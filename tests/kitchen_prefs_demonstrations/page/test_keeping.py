@@ -1,10 +1,12 @@
 """What becomes of a demonstration in the page: a reload, another tab, a name, a saving program."""
 
+import re
 import threading
 
 import pytest
 from chromium import needs_chromium
 from page_visitor import click, show, watch
+from playwright.sync_api import expect
 
 from kitchen_prefs.preferences import TWELVE
 from kitchen_prefs.simulation.kitchen import DOOR, FIRST_DISH, TOP_RACK
@@ -99,7 +101,7 @@ def test_name_and_consent_reach_the_file_that_was_saved_at_the_end(browser, serv
     page = browser.new_page(viewport=DESKTOP)
     page.goto(served)
     show(page, TWELVE[8])
-    page.wait_for_function("byId('kept').textContent.startsWith('Saved')")
+    expect(page.locator("#kept")).to_have_text(re.compile("^Saved"))
     page.fill("#user", "Ada")
     page.check("#may-be-kept")
     page.evaluate("sent")
