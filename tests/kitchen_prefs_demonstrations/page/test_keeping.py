@@ -4,7 +4,7 @@ import re
 import threading
 
 import pytest
-from chromium import needs_chromium
+from chromium import PATIENCE, needs_chromium
 from page_visitor import click, show, watch
 from playwright.sync_api import expect
 
@@ -101,7 +101,7 @@ def test_name_and_consent_reach_the_file_that_was_saved_at_the_end(browser, serv
     page = browser.new_page(viewport=DESKTOP)
     page.goto(served)
     show(page, TWELVE[8])
-    expect(page.locator("#kept")).to_have_text(re.compile("^Saved"))
+    expect(page.locator("#kept")).to_have_text(re.compile("^Saved"), timeout=PATIENCE)
     page.fill("#user", "Ada")
     page.check("#may-be-kept")
     page.evaluate("sent")
