@@ -2,7 +2,7 @@
 
 A fresh one takes four seconds to import what LeRobot needs, and the tests start dozens. LeRobot,
 `datasets` and `huggingface_hub` are not imported beforehand: they read the environment when they
-are. Nor is torch-geometric, which imports the last of them where transformers is installed.
+are. With the extras, torch-geometric imports the last of them, and is not imported either.
 """
 
 import multiprocessing
@@ -11,11 +11,13 @@ import runpy
 import subprocess
 import sys
 import tempfile
+from importlib.util import find_spec
 from pathlib import Path
 
 SLOW_TO_IMPORT = [
     *("torch", "torch._dynamo", "torch.distributed", "torchvision"),
     *("pandas", "pyarrow.dataset", "scipy.spatial.transform", "stable_baselines3", "av"),
+    *(() if find_spec("transformers") else ("torch_geometric.nn",)),
 ]
 
 _context = multiprocessing.get_context("forkserver")
