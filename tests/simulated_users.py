@@ -2,9 +2,16 @@
 
 import numpy as np
 
-from kitchen_prefs.preferences import SPACE_SIZE, preference_from_number
+from kitchen_prefs.preferences import CATEGORIES, SPACE_SIZE, preference_from_number
 from kitchen_prefs.simulation.expert import KitchenView, choose, roll_out_expert
-from kitchen_prefs.simulation.kitchen import SINK, Kitchen
+from kitchen_prefs.simulation.kitchen import (
+    DOOR,
+    FIRST_DISH,
+    FIRST_PLACEMENT,
+    RACK_INSTANCE,
+    SINK,
+    Kitchen,
+)
 from kitchen_prefs_demonstrations.file_format import DemonstrationFile
 from kitchen_prefs_demonstrations.kitchens import study_session
 from kitchen_prefs_demonstrations.replaying import replay
@@ -38,6 +45,35 @@ def slipping(session, preference, rate, seed):
             instance = SINK
         decisions.append(instance)
         kitchen.decide(instance)
+    return decisions
+
+
+def loading_by_rack(session, on_top):
+    """The decisions of a user who puts some categories on top, more or fewer than a preference."""
+    kitchen = Kitchen(session.dishes)
+    decisions = []
+
+    def decide(instance):
+        assert not kitchen.decide(instance)
+        decisions.append(instance)
+
+    def load(rack):
+        names = {i: CATEGORIES[session.dishes.category[i]] for i in kitchen.counter.tolist()}
+        own = [i for i, name in names.items() if (name in on_top) == (rack == "top")]
+        if not own:
+            return
+        decide(RACK_INSTANCE[rack])
+        for dish in own:
+            decide(FIRST_DISH + dish)
+            free = kitchen.free(rack, int(session.dishes.category[dish]))
+            decide(FIRST_PLACEMENT[rack] + int(free[0]))
+        decide(RACK_INSTANCE[rack])
+
+    decide(DOOR)
+    while len(kitchen.counter):
+        load("top")
+        load("bottom")
+    decide(DOOR)
     return decisions
 
 

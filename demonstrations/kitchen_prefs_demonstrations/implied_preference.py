@@ -6,7 +6,7 @@ import numpy as np
 
 from kitchen_prefs.preferences import CATEGORIES, Preference
 from kitchen_prefs.simulation.expert import KitchenView, choose
-from kitchen_prefs.simulation.kitchen import FIRST_DISH, Kitchen, decision_kind
+from kitchen_prefs.simulation.kitchen import FIRST_DISH, IN_RACK, Kitchen, decision_kind
 from kitchen_prefs_demonstrations.habits import occasions_of
 from kitchen_prefs_demonstrations.replaying import ReplayedDemonstration
 
@@ -22,6 +22,7 @@ class ImpliedPreference:
         preference: The preference.
         share: The share of picks and places that are of the kind that its expert chooses there.
         unseen: The categories of which no dish stands in a rack: their rack is a guess.
+        elsewhere: The categories most of whose dishes in racks stand in the other rack.
         ordered: How many of the nine pairs of categories of one rack the demonstration puts into an
             order; the order of the others is a guess.
     """
@@ -29,18 +30,21 @@ class ImpliedPreference:
     preference: Preference
     share: float
     unseen: tuple[str, ...]
+    elsewhere: tuple[str, ...]
     ordered: int
 
     @property
     def is_followed(self) -> bool:
         """Whether the demonstration shows every category and follows the preference."""
-        return not self.unseen and self.share >= LEAST_SHARE
+        return not self.unseen and not self.elsewhere and self.share >= LEAST_SHARE
 
     @property
     def why_not(self) -> str:
         """Why it is not followed, in a few words; empty if it is."""
         if self.unseen:
             return f"no {' and no '.join(self.unseen)} stands in a rack"
+        if self.elsewhere:
+            return f"the nearest one has {' and '.join(self.elsewhere)} in the other rack"
         if not self.is_followed:
             return f"{self.share:.0%} of its picks and places follow one"
         return ""
@@ -54,8 +58,24 @@ def implied_preference(demonstration: ReplayedDemonstration) -> ImpliedPreferenc
     kitchen = demonstration.kitchen
     shown = np.unique(kitchen.dishes.category[kitchen.placement >= 0])
     unseen = tuple(name for i, name in enumerate(CATEGORIES) if i not in shown)
-    ordered = len(_ordered_pairs(demonstration, preference))
-    return ImpliedPreference(preference, _share(demonstration, preference), unseen, ordered)
+    return ImpliedPreference(
+        preference,
+        _share(demonstration, preference),
+        unseen,
+        _elsewhere(kitchen, preference),
+        len(_ordered_pairs(demonstration, preference)),
+    )
+
+
+def _elsewhere(kitchen: Kitchen, preference: Preference) -> tuple[str, ...]:
+    """The categories most of whose dishes in racks stand in the rack that they should not."""
+    found = []
+    for i, name in enumerate(CATEGORIES):
+        location = kitchen.location[kitchen.dishes.category == i]
+        top, bottom = ((location == IN_RACK[rack]).sum() for rack in ("top", "bottom"))
+        if (top < bottom) if preference.rack_of[name] == "top" else (bottom < top):
+            found.append(name)
+    return tuple(found)
 
 
 def _share(demonstration: ReplayedDemonstration, preference: Preference) -> float:

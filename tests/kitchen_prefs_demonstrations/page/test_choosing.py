@@ -114,3 +114,11 @@ def test_who_finishes_by_keyboard_can_go_on_by_keyboard(page):
     assert "TTP has finished" in page.locator("#ttp-ends").inner_text()
     page.keyboard.press("Enter")
     assert page.evaluate("document.activeElement.id") == "play"
+
+
+def test_a_click_on_a_dish_in_a_rack_moves_the_rack(page):
+    click(page, DOOR, TOP_RACK)
+    page.evaluate("youChoose(FIRST_DISH + counterDishes(yourState())[0])")
+    page.evaluate("youChoose(nextChoice(yourState()))")
+    page.locator('#you-drawing .dish[data-place="top"]').first.dispatch_event("click")
+    assert page.evaluate("yourState().out") is None

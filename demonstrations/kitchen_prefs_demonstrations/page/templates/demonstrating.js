@@ -121,7 +121,9 @@ function hintFor(state) {
   if (isFinished(state)) return hintAtTheEnd();
   if (state.held !== null) return hintWithDish(state);
   if (counterDishes(state).length === 0) {
-    if (state.out !== null) return "Push the rack in.";
+    if (state.out !== null) {
+      return `Push the rack in${allArrived(state) ? "." : ": more dishes will come."}`;
+    }
     return "Everything is loaded: close the door.";
   }
   if (!state.doorOpen) return "Open the door: click the bar at the bottom.";

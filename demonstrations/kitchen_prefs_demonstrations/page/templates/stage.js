@@ -41,8 +41,16 @@ class Stage {
 
   click(event) {
     const placement = placementAt(event.target) ?? this.placementUnder(event);
-    const instance = placement ?? instanceOf(event.target) ?? this.dishNear(event);
+    const instance = placement ?? this.rackOf(event.target) ?? instanceOf(event.target)
+      ?? this.dishNear(event);
     if (instance !== null) this.onChoose(instance);
+  }
+
+  /** The rack of a dish that stands in one: with empty hands a click on it means the rack. */
+  rackOf(target) {
+    const dish = target.closest?.(".dish");
+    if (this.state.held !== null || !["top", "bottom"].includes(dish?.dataset.place)) return null;
+    return instanceOf(dish.closest(".rack"));
   }
 
   press(event) {
