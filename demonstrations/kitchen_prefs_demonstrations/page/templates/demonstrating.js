@@ -1,5 +1,7 @@
 // The left side: the visitor decides, and the kitchen answers.
 
+const TIMELINE = 40; // decisions that it shows at least: most demonstrations have fewer
+
 const you = {
   stage: null,
   kitchen: null, // the session whose dishes stand there
@@ -90,16 +92,22 @@ function finishDemonstration() {
 function showYou(says, refused = false) {
   const state = yourState();
   you.stage.show(state, "Your kitchen");
-  showInThree("you", state, you.kitchen);
-  byId("you-says").textContent = says;
-  byId("you-says").classList.toggle("refused", refused);
+  showStep("you", you, says, refused);
   byId("you-hint").textContent = hintFor(state);
-  byId("you-count").textContent = countsOf(state, you.decisions.length);
-  byId("you-timeline").replaceChildren(
-    drawTimeline(you.steps, you.decisions.length, Math.max(you.decisions.length, 40)));
   byId("undo").disabled = you.decisions.length === 0 || isFinished(state);
   byId("again").disabled = isFinished(state) && study.name !== null; // one demonstration a day
   byId("keep").hidden = you.shown.length === 0;
+}
+
+/** What both sides show of where they are: "you" or "ttp". */
+function showStep(side, { kitchen, steps, decisions }, says, refused) {
+  const { state } = steps.at(-1);
+  showInThree(side, state, kitchen);
+  byId(`${side}-says`).textContent = says;
+  byId(`${side}-says`).classList.toggle("refused", refused);
+  byId(`${side}-count`).textContent = countsOf(state, decisions.length);
+  byId(`${side}-timeline`).replaceChildren(
+    drawTimeline(steps, decisions.length, Math.max(decisions.length, TIMELINE)));
 }
 
 /** What arrived with the last action, in words. */

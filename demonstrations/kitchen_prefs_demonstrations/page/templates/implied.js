@@ -13,7 +13,8 @@
  * they were loaded.
  */
 function impliedPreference(demonstrations) {
-  const places = demonstrations.flatMap(placesIn);
+  const placesOfEach = demonstrations.map(placesIn);
+  const places = placesOfEach.flat();
   const categories = [...data.layout.categories.keys()];
   const ofCategory = (category) => places.filter((place) => place.category === category);
   const rackOf = categories.map((category) =>
@@ -24,8 +25,8 @@ function impliedPreference(demonstrations) {
   const isBefore = (one, other) => (lead[one][other] || times[other] - times[one]) > 0;
   const rankOf = categories.map((category) => categories.filter((other) =>
     rackOf[other] === rackOf[category] && isBefore(other, category)).length);
-  const first = mostFrequent(demonstrations
-    .map((one) => placesIn(one).find(({ rack }) => rack !== "sink")?.rack ?? null));
+  const first = mostFrequent(placesOfEach
+    .map((own) => own.find(({ rack }) => rack !== "sink")?.rack ?? null));
   const racks = first === "bottom" ? ["bottom", "top"] : ["top", "bottom"];
   return { rackOf, rankOf, lead, racks };
 }

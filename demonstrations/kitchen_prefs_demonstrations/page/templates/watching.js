@@ -24,6 +24,8 @@ function showWhatWaits(kitchen) {
   ttp.decisions = [];
   for (const id of ["by-rule", "by-attention"]) byId(id).textContent = "\u2014";
   byId("ttp-ends").textContent = "";
+  byId("score").hidden = true;
+  byId("next").hidden = true;
   showTTP("waits for your demonstration");
 }
 
@@ -31,8 +33,6 @@ function showWhatWaits(kitchen) {
 function stopWatching() {
   pause();
   ttp.memory = null;
-  byId("score").hidden = true;
-  byId("next").hidden = true;
   showWhatWaits(ttp.kitchen);
 }
 
@@ -43,8 +43,6 @@ function startWatching(kitchen) {
   ttp.preference = impliedPreference(you.shown);
   ttp.shownInWords = you.shown.map(decisionsInWords);
   ttp.memory = ttp.policy.begin(ttp.policy.readPrompts(you.shown));
-  byId("score").hidden = true;
-  byId("next").hidden = true;
   showWhatWaits(kitchen);
   remember();
   showTTP(you.shown.length > 1 ? `has read your ${you.shown.length} demonstrations`
@@ -101,14 +99,8 @@ function oneDecision() {
 }
 
 function showTTP(says, refused = false) {
-  const state = ttpState();
-  byId("ttp-drawing").replaceChildren(drawKitchen(state, `TTP: ${says}`));
-  showInThree("ttp", state, ttp.kitchen);
-  byId("ttp-says").textContent = says;
-  byId("ttp-says").classList.toggle("refused", refused);
-  byId("ttp-count").textContent = countsOf(state, ttp.decisions.length);
-  byId("ttp-timeline").replaceChildren(
-    drawTimeline(ttp.steps, ttp.decisions.length, Math.max(ttp.decisions.length, 40)));
+  byId("ttp-drawing").replaceChildren(drawKitchen(ttpState(), `TTP: ${says}`));
+  showStep("ttp", ttp, says, refused);
   for (const id of ["play", "step"]) byId(id).disabled = watchingIsOver();
 }
 
