@@ -1,7 +1,7 @@
 """Judges a submission by its policy's re-runs."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 from math import hypot, sqrt
 
 import numpy as np
@@ -13,21 +13,50 @@ from kitchen_prefs_leaderboard.submission_format import installed_packages
 from kitchen_prefs_leaderboard.verification import PROCEDURE, ScoreInterval, Verification
 
 ALIKE = 0.95  # of the episodes of a deterministic policy: other processors round otherwise
-STOCHASTIC_RUNS = 3
 SIGNIFICANT = 1.96  # standard errors, for 95 %
-# Standard errors by which Score on fresh sessions must be lower to speak against a submission: with
-# two comparisons for each of a board's rows, 1.96 would refuse one honest row in twenty.
+# Standard errors by which Score on fresh sessions, or alone, must differ to speak against a
+# submission: with some comparisons for each of a board's rows, 1.96 would refuse one honest row in
+# twenty.
 SUSPICIOUS = 3.0
 FIVE, TWO_HUNDRED = "unseen_preferences", "many_preferences"  # splits of so many other users
 
 Episodes = Mapping[str, Sequence[Episode]]  # of each test split
 
 
+@dataclass(frozen=True)
+class Reruns:
+    """The episodes of a policy that was rolled out again, mixed into batches unless said otherwise.
+
+    Attributes:
+        published: On the published sessions.
+        fresh: On fresh sessions.
+        alone: On some of the fresh sessions, each in a batch of its own.
+        again: On the published sessions once more; None if the first run repeats the submission.
+        singly: On the published sessions, each in a batch of its own; None likewise.
+    """
+
+    published: Episodes
+    fresh: Episodes
+    alone: Episodes
+    again: Episodes | None = None
+    singly: Episodes | None = None
+
+    @property
+    def batched(self) -> list[Episodes]:
+        """The runs on the published sessions that were mixed into batches."""
+        return [self.published] + ([self.again] if self.again else [])
+
+    @property
+    def shown(self) -> Episodes:
+        """The run whose Score is shown and ranked: the one that no batch can have helped."""
+        return self.singly or self.published
+
+
 def needs_more_runs(entry: Entry, first: Episodes) -> bool:
     """Whether a policy has to be rolled out again to be judged: it did not repeat its submission.
 
-    A deterministic policy repeats itself; one that does not is rolled out `STOCHASTIC_RUNS` times,
-    so that its own spread is known, with each session in a batch of its own.
+    A deterministic policy repeats itself; one that does not is rolled out twice more, once in other
+    batches and once with each session in a batch of its own, so that its own spread is known.
     """
     return alike(entry.episodes, first) < ALIKE
 
@@ -39,16 +68,7 @@ def alike(episodes: Episodes, others: Episodes) -> float:
     return sum(same) / len(same)
 
 
-def compare(
-    entry: Entry,
-    reruns: Sequence[Episodes],
-    alone: Episodes,
-    fresh: Episodes,
-    *,
-    salt: int,
-    by: str,
-    sandbox: bool,
-) -> Verification:
+def compare(entry: Entry, reruns: Reruns, *, salt: int, by: str, sandbox: bool) -> Verification:
     """Judge a submission by its policy's re-runs.
 
     It repeats if at least 95 % of the episodes are alike. If they are not, but the policy repeats
@@ -57,8 +77,8 @@ def compare(
     within 1.96 standard errors, which come from the runs and never from the submission.
 
     An episode is independent of others if, rolled out in a batch of its own, it goes as in a batch
-    with others; of a policy that does not repeat itself this cannot be known, and its runs are of
-    batches of one.
+    with others; of a policy that does not repeat itself, Score with each session alone must lie
+    within three such standard errors of Score in batches.
 
     It generalises if on fresh sessions its Score is not lower than in the re-run by more than three
     standard errors: on the sessions of the training users, and on those of all others, whose fresh
@@ -66,20 +86,22 @@ def compare(
 
     Args:
         entry: The submission, replayed.
-        reruns: The policy's episodes on the published sessions, one or `STOCHASTIC_RUNS` times.
-        alone: Its episodes on some fresh sessions, each in a batch of its own.
-        fresh: Its episodes on fresh sessions.
+        reruns: The policy's episodes.
         salt: The session seed of the fresh sessions.
         by: Who re-runs.
         sandbox: Whether the policy's process was confined.
     """
-    same = alike(entry.episodes, reruns[0])
-    itself = alike(reruns[0], reruns[1]) if len(reruns) > 1 else None
-    deterministic = itself is None or itself >= ALIKE
-    scores = _mean_scores(reruns)
-    rerun = _interval_of(reruns[0], scores)
-    on_fresh = mean_of_splits(list(fresh.values()), score)
-    went_alone = alike(fresh, alone)
+    same = alike(entry.episodes, reruns.published)
+    itself = alike(reruns.published, reruns.again) if reruns.again else None
+    went_alone = alike(reruns.fresh, reruns.alone)
+    if itself is None or itself >= ALIKE:
+        repeats, independent = same >= ALIKE, went_alone >= ALIKE
+    else:
+        assert reruns.singly is not None
+        runs = [*reruns.batched, reruns.singly]
+        repeats = _likely(entry.episodes, runs, SIGNIFICANT)
+        independent = _likely(reruns.singly, reruns.batched, SUSPICIOUS)
+    scores = _mean_scores([reruns.shown])
     return Verification(
         procedure=PROCEDURE,
         digest=entry.digest,
@@ -87,19 +109,18 @@ def compare(
         sandbox=sandbox,
         packages=installed_packages(),
         salt=salt,
-        runs=len(reruns),
+        runs=len(reruns.batched) + (reruns.singly is not None),
         same=same,
         itself=itself,
         alone=went_alone,
         replayed=_score_interval(entry.metrics[MEAN]["Score"]),
-        rerun=_score_interval(rerun),
-        fresh=_score_interval(on_fresh),
+        rerun=_score_interval(_interval_of(reruns.shown, scores)),
+        fresh=_score_interval(mean_of_splits(list(reruns.fresh.values()), score)),
         scores={split: [round(value, 4) for value in scores[split]] for split in scores},
-        repeats=same >= ALIKE if deterministic else _within_spread(entry, reruns),
-        independent=went_alone >= ALIKE or not deterministic,
-        generalises=all(
-            _as_good_on_fresh(reruns[0], scores, fresh, known=known) for known in (True, False)
-        ),
+        repeats=repeats,
+        independent=independent,
+        generalises=_as_good_on_fresh(reruns, known=True)
+        and _as_good_on_fresh(reruns, known=False),
     )
 
 
@@ -135,22 +156,19 @@ def in_its_session(
     return lambda e: of_session[e.split, e.session]
 
 
-def _as_good_on_fresh(
-    published: Episodes, scores: Mapping[str, Sequence[float]], fresh: Episodes, *, known: bool
-) -> bool:
+def _as_good_on_fresh(reruns: Reruns, *, known: bool) -> bool:
     """Whether Score on fresh sessions is not significantly lower than on the published ones.
 
     Args:
-        published: The episodes of the published sessions.
-        scores: Score in each of them.
-        fresh: The episodes of the fresh sessions.
+        reruns: The policy's episodes, of which those that were mixed into batches are compared.
         known: Compare the sessions of the training users, else those of all others.
     """
-    ours, theirs = _of_users(published, known), _of_users(fresh, known)
-    before = mean_of_splits(ours, in_its_session(published, scores))
+    ours, theirs = _of_users(reruns.published, known), _of_users(reruns.fresh, known)
+    scores = _mean_scores(reruns.batched)
+    before = mean_of_splits(ours, in_its_session(reruns.published, scores))
     after = mean_of_splits(theirs, score)
     sessions = hypot(before.mean - before.low, after.high - after.mean) / SIGNIFICANT
-    users = 0.0 if known else _error_of_other_users(published, fresh)
+    users = 0.0 if known else _error_of_other_users(reruns.published, reruns.fresh)
     return before.mean - after.mean <= SUSPICIOUS * hypot(sessions, users)
 
 
@@ -177,17 +195,17 @@ def _of_users(episodes: Episodes, known: bool) -> list[list[Episode]]:
     return [of_split for of_split in of_splits if of_split]
 
 
-def _within_spread(entry: Entry, reruns: Sequence[Episodes]) -> bool:
-    """Whether the submission's Score is one that the policy's own runs make likely."""
+def _likely(run: Episodes, others: Sequence[Episodes], limit: float) -> bool:
+    """Whether a run's Score is one that other runs make likely, within `limit` standard errors."""
     difference, variance = 0.0, 0.0
     for split in TEST_SPLITS:
-        runs = np.array([[score(e) for e in run[split]] for run in reruns])  # (R, S)
-        submitted = np.array([score(e) for e in entry.episodes[split]])  # (S,)
-        difference += (submitted - runs.mean(0)).mean() / len(TEST_SPLITS)
+        known = np.array([[score(e) for e in other[split]] for other in others])  # (R, S)
+        judged = np.array([score(e) for e in run[split]])  # (S,)
+        difference += (judged - known.mean(0)).mean() / len(TEST_SPLITS)
         # One run against the mean of R runs: each session adds its variance times 1 + 1/R.
-        spread = runs.var(0, ddof=1).sum() / runs.shape[1] ** 2
-        variance += (1 + 1 / len(runs)) * spread / len(TEST_SPLITS) ** 2
-    return bool(abs(difference) <= SIGNIFICANT * sqrt(variance))
+        spread = known.var(0, ddof=1).sum() / known.shape[1] ** 2
+        variance += (1 + 1 / len(known)) * spread / len(TEST_SPLITS) ** 2
+    return bool(abs(difference) <= limit * sqrt(variance))
 
 
 def _score_interval(interval: Interval) -> ScoreInterval:

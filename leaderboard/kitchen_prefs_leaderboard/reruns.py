@@ -26,7 +26,7 @@ from kitchen_prefs.evaluation.rollouts import BATCH_SIZE, roll_out
 from kitchen_prefs.metrics import Episode
 from kitchen_prefs.simulation.sessions import FRESH_USERS, PUBLISHED_USERS
 from kitchen_prefs.splits import TEST_SPLITS, get_split
-from kitchen_prefs_leaderboard.judgement import STOCHASTIC_RUNS, compare, needs_more_runs
+from kitchen_prefs_leaderboard.judgement import Reruns, compare, needs_more_runs
 from kitchen_prefs_leaderboard.scoring import Entry
 from kitchen_prefs_leaderboard.verification import Verification
 
@@ -187,24 +187,21 @@ def rerun_submission(entry: Entry, rerunner: Rerunner, salt: int | None, by: str
         ValueError: If the policy fails, see `Rerunner.roll_out`.
     """
     fresh = fresh_run(rerunner.folder, entry.submission.track, salt)
-    first = Run("published-1", 0)
+    first, again = Run("published-1", 0), Run("published-2", 0)
+    singly = Run("published-singly", 0, batch_size=1)
     # Fresh sessions, because a policy may know the published ones and behave there.
     alone = Run(f"alone-{fresh.salt}", fresh.salt, few=True, batch_size=1)
     found = rerunner.roll_out([first, alone, fresh])
-    reruns = [found[first.name]]
-    if needs_more_runs(entry, reruns[0]):
-        numbers = range(1, STOCHASTIC_RUNS + 1)
-        singly = [Run(f"published-singly-{n}", 0, batch_size=1) for n in numbers]
-        reruns = list(rerunner.roll_out(singly).values())
-    return compare(
-        entry,
-        reruns,
-        found[alone.name],
-        found[fresh.name],
-        salt=fresh.salt,
-        by=by,
-        sandbox=has_sandbox(),
+    if needs_more_runs(entry, found[first.name]):
+        found |= rerunner.roll_out([again, singly])
+    reruns = Reruns(
+        published=found[first.name],
+        fresh=found[fresh.name],
+        alone=found[alone.name],
+        again=found.get(again.name),
+        singly=found.get(singly.name),
     )
+    return compare(entry, reruns, salt=fresh.salt, by=by, sandbox=has_sandbox())
 
 
 def _shuffled_batches(files: Files) -> list[Batch]:

@@ -45,13 +45,14 @@ class Verification(Strict):
         salt: The session seed of the fresh sessions.
         runs: How often the policy was rolled out on the published sessions.
         same: The share of episodes with the same decisions as in the submission.
-        itself: The share of episodes with the same decisions in two of these runs; None for one.
+        itself: The share of episodes with the same decisions in two runs in batches; None for one.
         alone: The share of the episodes that were rolled out in a batch of their own and went as
             in a batch with others.
         replayed: Score of the submission's actions.
         rerun: Score of the policy on the same sessions.
         fresh: Score of the policy on the fresh sessions.
-        scores: Score of the policy in each session of each test split, its mean over the runs.
+        scores: Score of the policy in each session of each test split; of a policy that does not
+            repeat itself, in the run with each session in a batch of its own.
         repeats: Whether the policy does what the submission says.
         independent: Whether an episode does not depend on others.
         generalises: Whether its Score on the fresh sessions is not significantly lower.

@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from kitchen_prefs_leaderboard.judgement import compare
+from kitchen_prefs_leaderboard.judgement import Reruns, compare
 from kitchen_prefs_leaderboard.ranking import Row, lead, rank
 from kitchen_prefs_leaderboard.scoring import MEAN, score_submissions
 from kitchen_prefs_leaderboard.submission_writing import write_submission
@@ -12,7 +12,8 @@ from kitchen_prefs_leaderboard.submission_writing import write_submission
 
 def confirmed(entry, rerun, fresh):
     """The record of a re-run."""
-    return compare(entry, [rerun], rerun, fresh, salt=1, by="A. Maintainer", sandbox=True)
+    reruns = Reruns(rerun, fresh, alone=rerun)
+    return compare(entry, reruns, salt=1, by="A. Maintainer", sandbox=True)
 
 
 ALL = range(6)  # all sessions of a split that was cut short

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import pytest
 
-from kitchen_prefs_leaderboard.judgement import compare
+from kitchen_prefs_leaderboard.judgement import Reruns, compare
 from kitchen_prefs_leaderboard.ranking import rank
 from kitchen_prefs_leaderboard.scoring import score_submissions
 from kitchen_prefs_leaderboard.submission_format import Policy
@@ -24,17 +24,10 @@ ALL = range(6)  # all sessions of a split that was cut short
 def found(few_episodes):
     """What a re-run of an entry comes to, in which some sessions go badly."""
 
-    def compared(entry, rerun=(), fresh=(), runs=None, alone=None):
+    def compared(entry, rerun=(), fresh=(), alone=None, again=None, singly=None):
         on_fresh = few_episodes(fresh, SALT)
-        return compare(
-            entry,
-            runs or [few_episodes(rerun)],
-            alone or on_fresh,
-            on_fresh,
-            salt=SALT,
-            by="A. Maintainer",
-            sandbox=True,
-        )
+        reruns = Reruns(few_episodes(rerun), on_fresh, alone or on_fresh, again, singly)
+        return compare(entry, reruns, salt=SALT, by="A. Maintainer", sandbox=True)
 
     return compared
 
@@ -80,8 +73,7 @@ def test_actions_worse_than_the_policy_are_not_confirmed(make_entry, found):
 
 def test_episodes_that_were_thrown_away_do_not_make_room(make_entry, found, few_episodes):
     thrown_away = make_entry("a", worse=range(4))  # its own interval is wide
-    runs = [few_episodes(), few_episodes(), few_episodes()]
-    verification = found(thrown_away, runs=runs)
+    verification = found(thrown_away, again=few_episodes(), singly=few_episodes())
     assert verification.same < 0.95 < verification.itself
     assert not verification.repeats
 
@@ -90,12 +82,22 @@ def test_episodes_that_were_thrown_away_do_not_make_room(make_entry, found, few_
 def test_a_stochastic_policy_is_judged_by_its_own_spread(
     make_entry, found, few_episodes, worse, confirmed
 ):
-    runs = [few_episodes([0, 1]), few_episodes([2, 3]), few_episodes([4, 5])]
-    verification = found(make_entry("a", worse=worse), runs=runs)
+    again, singly = few_episodes([2, 3]), few_episodes([4, 5])
+    verification = found(make_entry("a", worse=worse), [0, 1], again=again, singly=singly)
     assert verification.itself < 0.95
     assert verification.repeats == confirmed
     assert verification.runs == 3
-    assert all(0.6 < value < 0.8 for value in verification.scores["seen"])  # one run in three fails
+    assert verification.independent
+    low = [value < 0.1 for value in verification.scores["seen"]]
+    assert low == [False] * 4 + [True] * 2  # the run that no batch helped
+
+
+def test_a_stochastic_policy_that_its_batch_helps_is_not_confirmed(make_entry, found, few_episodes):
+    again, singly = few_episodes([2]), few_episodes(ALL)
+    verification = found(make_entry("a", worse=[1]), [0], again=again, singly=singly)
+    assert verification.itself < 0.95
+    assert not verification.independent
+    assert not verification.confirmed
 
 
 def test_a_policy_whose_episodes_depend_on_each_other_is_not_confirmed(
@@ -119,7 +121,7 @@ def test_a_policy_that_knows_the_held_out_users_alone_is_not_confirmed(
         ]
     rerun = few_episodes()
     about = {"salt": SALT, "by": "A. Maintainer", "sandbox": True}
-    assert compare(entry, [rerun], rerun, fresh, **about).generalises == confirmed
+    assert compare(entry, Reruns(rerun, fresh, rerun), **about).generalises == confirmed
 
 
 def test_records_of_the_earlier_procedure_are_still_read(make_entry, found, tmp_path):
