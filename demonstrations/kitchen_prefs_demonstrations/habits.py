@@ -5,8 +5,9 @@ is what people are compared by.
 """
 
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import combinations, permutations
 
 from kitchen_prefs.preferences import CATEGORIES, RACKS
 from kitchen_prefs.simulation import layout
@@ -20,7 +21,8 @@ class Habit:
 
     Attributes:
         rack_of: The rack in which most dishes of a category stand; none for one that is in no rack.
-        rank_of: The rank of a category among those of its rack, by its first dish that went there.
+        rank_of: The rank of a category among those of its rack, in the order that most picks
+            follow.
     """
 
     rack_of: dict[str, str]
@@ -29,26 +31,29 @@ class Habit:
 
 def habit_of(demonstration: ReplayedDemonstration) -> Habit:
     """Read the habit of a demonstration."""
-    standing: dict[str, Counter[str]] = {rack: Counter() for rack in RACKS}
-    first: dict[tuple[str, str], int] = {}
+    standing: Counter[tuple[str, str]] = Counter()  # in order of the first dish
     kitchen = Kitchen(demonstration.session.dishes)
-    for number, instance in enumerate(demonstration.decisions):
+    for instance in demonstration.decisions:
         held, rack = kitchen.held, kitchen.open_rack
         kitchen.decide(instance)
         if held is not None and rack and kitchen.location[held] == IN_RACK[rack]:
-            category = category_of(kitchen, held)
-            standing[rack][category] += 1
-            first.setdefault((rack, category), number)
-    known = [c for c in CATEGORIES if any(standing[rack][c] for rack in RACKS)]
-    rack_of = {c: max(RACKS, key=lambda rack: standing[rack][c]) for c in known}
-    rank_of = {
-        category: rank
-        for rack in RACKS
-        for rank, category in enumerate(
-            sorted((c for c in known if rack_of[c] == rack), key=lambda c: first[rack, c])
-        )
-    }
-    return Habit(rack_of, rank_of)
+            standing[category_of(kitchen, held), rack] += 1
+    known = dict.fromkeys(category for category, _ in standing)
+    rack_of = {c: max(RACKS, key=lambda rack: standing[c, rack]) for c in known}
+    before = picks_before(occasions_of(demonstration), rack_of)
+    orders = [_order([c for c in known if rack_of[c] == name], before) for name in RACKS]
+    return Habit(rack_of, {c: rank for order in orders for rank, c in enumerate(order)})
+
+
+def _order(categories: Sequence[str], before: Counter[tuple[str, str]]) -> Sequence[str]:
+    """The order that most picks follow (Kemeny's); among equals, that of the first dishes.
+
+    At most seven categories have 5,040 orders.
+    """
+    return max(
+        permutations(categories),
+        key=lambda order: sum(before[pair] for pair in combinations(order, 2)),
+    )
 
 
 @dataclass(frozen=True)
@@ -78,6 +83,19 @@ def occasions_of(demonstration: ReplayedDemonstration) -> list[Occasion]:
             found.append(Occasion(kitchen.open_rack, waiting, picked))
         kitchen.decide(instance)
     return found
+
+
+def picks_before(
+    occasions: Iterable[Occasion], rack_of: Mapping[str, str]
+) -> Counter[tuple[str, str]]:
+    """How often one category is picked for the rack that is out while another one waits for it."""
+    return Counter(
+        (occasion.picked, other)
+        for occasion in occasions
+        if occasion.picked and rack_of.get(occasion.picked) == occasion.rack
+        for other in occasion.waiting - {occasion.picked}
+        if rack_of.get(other) == occasion.rack
+    )
 
 
 def turns(occasions: Iterable[Occasion], habit: Habit) -> tuple[int, int]:

@@ -7,7 +7,7 @@ import numpy as np
 from kitchen_prefs.preferences import CATEGORIES, Preference
 from kitchen_prefs.simulation.expert import KitchenView, choose
 from kitchen_prefs.simulation.kitchen import FIRST_DISH, IN_RACK, Kitchen, decision_kind
-from kitchen_prefs_demonstrations.habits import occasions_of
+from kitchen_prefs_demonstrations.habits import occasions_of, picks_before
 from kitchen_prefs_demonstrations.replaying import ReplayedDemonstration
 
 # Two slips among the 24 or 28 picks and places of a demonstration leave .92 or .93.
@@ -98,13 +98,7 @@ def _ordered_pairs(
 
     One is picked for the rack that is out while the other waits, or a third is between them.
     """
-    pairs = {
-        (occasion.picked, other)
-        for occasion in occasions_of(demonstration)
-        if occasion.picked and preference.rack_of[occasion.picked] == occasion.rack
-        for other in occasion.waiting - {occasion.picked}
-        if preference.rack_of[other] == occasion.rack
-    }
+    pairs = set(picks_before(occasions_of(demonstration), preference.rack_of))
     for middle in CATEGORIES:  # Warshall: the order is transitive
         before = [one for one in CATEGORIES if (one, middle) in pairs]
         after = [other for other in CATEGORIES if (middle, other) in pairs]

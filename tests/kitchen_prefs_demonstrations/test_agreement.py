@@ -11,7 +11,7 @@ from kitchen_prefs.metrics import Interval
 from kitchen_prefs_demonstrations.agreement import agreement
 from kitchen_prefs_demonstrations.comparison import MEASURES, compare, traits_of, where
 from kitchen_prefs_demonstrations.habits import habit_of, occasions_of, turns
-from kitchen_prefs_demonstrations.kitchens import study_session
+from kitchen_prefs_demonstrations.kitchens import page_sessions, study_session
 
 USERS = 8
 
@@ -38,6 +38,13 @@ def test_a_habit_is_the_preference_of_its_user():
         assert habit.rack_of == preference.rack_of
         right, counted = turns(occasions_of(shown), habit)
         assert right == counted > 0
+
+
+def test_a_user_agrees_with_herself_where_dishes_arrive_later():
+    for number, session in enumerate(page_sessions(10)):
+        preference = preference_of(number)
+        shown = traits_of(demonstrated(slipping(session, preference, 0, 0), 0, 1, session))
+        assert compare(shown, shown)["Turn"] in (1, None)
 
 
 def same_place(count, rate):
