@@ -16,6 +16,9 @@ from kitchen_prefs.evaluation import commands as evaluation
 from kitchen_prefs.physics import commands as physics
 
 
+STOPPED = 130  # typer's exit code for Ctrl-C, of which it says nothing
+
+
 def main() -> None:
     """Run a command; an error that the user can correct is one sentence, with exit code 1.
 
@@ -27,6 +30,10 @@ def main() -> None:
         if os.environ.get("KITCHEN_PREFS_DEBUG") == "1":
             raise
         sys.exit(f"kitchen-prefs: {_printable(str(error))}")
+    except SystemExit as end:
+        if end.code == STOPPED:
+            print("\nkitchen-prefs: stopped; what was finished stays.", file=sys.stderr)
+        raise
 
 
 def _printable(text: str) -> str:

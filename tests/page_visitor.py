@@ -67,4 +67,4 @@ def click(page, *instances):
 
 def says(page):
     """What the page answers the visitor."""
-    return page.locator("#you-says").inner_text()
+    return page.locator("#you-says").inner_text().strip()

@@ -58,7 +58,8 @@ def serve(
 
     html = _page(study, SAVE_TO)
     make_folder(out, "--out")
-    with at_work_alone(out), DemonstrationServer(html, out, port, _print_saved) as server:
+    serving = DemonstrationServer(html, out, port, _print_saved, study)
+    with serving as server, at_work_alone(out):
         console.print(f"The page is at {server.address}; demonstrations go to {out}.")
         try:
             server.serve_forever()
@@ -137,7 +138,8 @@ def _page(study: str | None, save_to: str | None) -> str:
 
     if study is not None:
         check_study_name(study)
-    return demonstration_page(study=study, save_to=save_to)
+    with console.status("Making the page, which takes half a minute..."):
+        return demonstration_page(study=study, save_to=save_to)
 
 
 def _print_saved(file: Path, demonstration: "ReplayedDemonstration") -> None:

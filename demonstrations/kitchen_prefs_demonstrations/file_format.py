@@ -9,8 +9,9 @@ decisions are never refused, and it would count in the index of the decisions th
 """
 
 import re
+import unicodedata
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated
 
 from pydantic import AfterValidator, Field, StringConstraints, model_validator
 
@@ -25,15 +26,38 @@ MOST_BYTES = 16 * 1024  # 160 decisions of 6 characters and two names have some 
 MOST_INSTANCE = FIRST_PLACEMENT["top"] + 999
 MOST_SALT = 2**53 - 1  # what JavaScript counts exactly
 
-# Words of letters, digits and what stands within names (2019 is the apostrophe): no character that
-# HTML, a shell or a spreadsheet takes for its own.
-WORD = r"[\p{L}\p{N}][\p{L}\p{M}\p{N}.'\x{2019}_-]*"
-PERSON = rf"^{WORD}( {WORD})*$"
-Person = Annotated[
-    str, StringConstraints(max_length=60, pattern=PERSON), AfterValidator(check_visible)
-]
-CODE = r"^[A-Za-z0-9_-]{1,60}$"
-Code = Annotated[str, StringConstraints(pattern=CODE)]
+# Words of letters, digits and what stands within names: no character that HTML, a shell or a
+# spreadsheet takes for its own.
+WITHIN_NAMES = ".'\N{RIGHT SINGLE QUOTATION MARK}_-"
+CODE = re.compile(r"[A-Za-z0-9_-]{1,60}")
+
+
+def _check_person(name: str) -> str:
+    for word in name.split(" "):
+        kinds = [unicodedata.category(letter)[0] for letter in word]  # L letter, M mark, N digit
+        fine = [
+            kind in "LMN" or letter in WITHIN_NAMES
+            for letter, kind in zip(word, kinds, strict=True)
+        ]
+        if not word or kinds[0] not in "LN" or not all(fine):
+            raise ValueError("a name has words of letters, digits and . ' _ - with a space between")
+    return check_visible(name)
+
+
+def _check_code(code: str) -> str:
+    if not CODE.fullmatch(code):
+        raise ValueError("it has 1 to 60 letters, digits, '-' and '_'")
+    return code
+
+
+def _check_format(number: int) -> int:
+    if number != FORMAT:
+        raise ValueError(f"this is format {number}, and this release reads {FORMAT}")
+    return number
+
+
+Person = Annotated[str, StringConstraints(max_length=60), AfterValidator(_check_person)]
+Code = Annotated[str, AfterValidator(_check_code)]
 Instance = Annotated[int, Field(ge=0, le=MOST_INSTANCE)]
 
 
@@ -66,7 +90,7 @@ class DemonstrationFile(Strict):
         study: The study; None outside of one.
     """
 
-    format: Literal[1]
+    format: Annotated[int, AfterValidator(_check_format)]
     data_version: Annotated[int, Field(ge=1, le=1000)]
     split: Annotated[str, StringConstraints(pattern=r"^[a-z_]{1,40}$")]
     session: Annotated[int, Field(ge=0, le=10_000)]
@@ -94,7 +118,7 @@ def check_study_name(name: str) -> None:
     Raises:
         ValueError: If not.
     """
-    if not re.fullmatch(CODE, name):
+    if not CODE.fullmatch(name):
         raise ValueError(
             f"A study's name has 1 to 60 letters, digits, '-' and '_', unlike {name!r}."
         )

@@ -99,10 +99,10 @@ def _free_root(name: str) -> Path:
 def _check_consent(files: Sequence[Path], replayed: Sequence[ReplayedDemonstration]) -> None:
     missing = [str(f) for f, r in zip(files, replayed, strict=True) if not r.file.consent]
     if missing:
+        others = f" and {len(missing) - 1} more" if len(missing) > 1 else ""
         raise ValueError(
-            f"{missing[0]} came without consent to be kept in a data set ({len(missing)} of "
-            f"{len(files)} did); leave it out, or add --without-consent if it is your own or the "
-            "data set stays with you."
+            f"{missing[0]}{others} came without consent to be kept in a data set; leave out what "
+            "did, or add --without-consent if it is your own or the data set stays with you."
         )
 
 

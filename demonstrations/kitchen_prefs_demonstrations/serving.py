@@ -45,6 +45,7 @@ class DemonstrationServer(ThreadingHTTPServer):
         folder: Where demonstrations are saved; it exists.
         port: The port; 0 takes any that is free.
         on_saved: Called with each saved file and its demonstration.
+        study: The only study whose demonstrations it saves; None saves all.
 
     Raises:
         OSError: If the port is taken.
@@ -52,10 +53,13 @@ class DemonstrationServer(ThreadingHTTPServer):
 
     daemon_threads = False  # closing waits for what is being written
 
-    def __init__(self, page: str, folder: Path, port: int, on_saved: Progress) -> None:
+    def __init__(
+        self, page: str, folder: Path, port: int, on_saved: Progress, study: str | None = None
+    ) -> None:
         self.page = page.encode()
         self._folder = folder
         self._on_saved = on_saved
+        self._study = study
         self._saving = threading.Lock()
         try:
             super().__init__((LOOPBACK, port), _Handler)
@@ -87,6 +91,7 @@ class DemonstrationServer(ThreadingHTTPServer):
             OSError: If it cannot be written.
         """
         demonstration = parse_demonstration(content, "The demonstration")
+        self._check_study(demonstration)
         replayed = replay(demonstration, "The demonstration")
         with self._saving:
             file = self._folder / name if name else _next_file(self._folder)
@@ -95,6 +100,11 @@ class DemonstrationServer(ThreadingHTTPServer):
             write_demonstration(demonstration, file)
             self._on_saved(file, replayed)
         return file
+
+    def _check_study(self, demonstration: DemonstrationFile) -> None:
+        theirs = demonstration.study.name if demonstration.study else "no study"
+        if self._study not in (None, theirs):
+            raise ValueError(f"This page serves the study {self._study}, and not {theirs}.")
 
     def handle_error(self, request: Any, client_address: Any) -> None:
         """Report an error of a request; a browser that has left is none."""

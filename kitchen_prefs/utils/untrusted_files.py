@@ -58,7 +58,8 @@ def complaint(error: ValidationError) -> str:
     """The first validation error, in a few printable words."""
     first = error.errors(include_url=False, include_input=False)[0]
     at = ".".join(str(step)[:40] for step in first["loc"][:6])
-    words = f"{f'{at}: ' if at else ''}{first['msg'][:200]}."
+    message = first["msg"].removeprefix("Value error, ")[:200]
+    words = f"{f'{at}: ' if at else ''}{message}."
     # The name of an extra field is untrusted.
     return "".join(character if character.isprintable() else "?" for character in words)
 

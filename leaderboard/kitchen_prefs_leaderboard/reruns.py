@@ -4,7 +4,6 @@ The policy cannot tell which episodes count: published and fresh sessions, users
 one random order, mixed into batches, and each process is started without any of them.
 """
 
-import secrets
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
@@ -22,67 +21,17 @@ from kitchen_prefs.evaluation.episode_files import EpisodeFile
 from kitchen_prefs.evaluation.evaluator import Evaluator
 from kitchen_prefs.evaluation.isolation.isolated_policy import IsolatedPolicy, Limits
 from kitchen_prefs.evaluation.isolation.sandbox import has_sandbox
-from kitchen_prefs.evaluation.rollouts import BATCH_SIZE, roll_out
+from kitchen_prefs.evaluation.rollouts import roll_out
 from kitchen_prefs.metrics import Episode
-from kitchen_prefs.simulation.sessions import FRESH_USERS, PUBLISHED_USERS
-from kitchen_prefs.splits import TEST_SPLITS, get_split
+from kitchen_prefs.splits import TEST_SPLITS
 from kitchen_prefs_leaderboard.judgement import Reruns, compare, needs_more_runs
+from kitchen_prefs_leaderboard.rerun_plan import Run, fresh_run
 from kitchen_prefs_leaderboard.scoring import Entry
 from kitchen_prefs_leaderboard.verification import Verification
 
 Episodes = dict[str, list[Episode]]  # of each test split, in the order of the sessions
 Batch = tuple["Run", str, tuple[int, ...]]  # a run, a split and some of its sessions
 Files = dict[tuple["Run", str], EpisodeFile]  # the episodes of each run and split
-
-ALONE = 2  # fresh sessions of each split that are also rolled out in a batch of their own
-LABELLED_TRACKS = ("privileged", "open")  # there a preference may have to be one of the twelve
-MOST_SALT = 2**53  # the page's JavaScript holds every integer below
-
-
-@dataclass(frozen=True)
-class Run:
-    """One roll-out of the test splits.
-
-    Attributes:
-        name: The folder of its episodes.
-        salt: The session seed.
-        few: Whether it has `ALONE` sessions of each split, which the seed chooses.
-        batch_size: How many sessions are rolled out at once.
-    """
-
-    name: str
-    salt: int
-    few: bool = False
-    batch_size: int = BATCH_SIZE
-
-    def sessions(self, split: str) -> Sequence[int]:
-        """Its sessions of a split."""
-        everything = range(get_split(split).sessions)
-        if not self.few:
-            return everything
-        generator = np.random.default_rng([self.salt, TEST_SPLITS.index(split)])
-        return sorted(generator.choice(everything, ALONE, replace=False).tolist())
-
-
-def fresh_run(folder: Path, track: str, salt: int | None) -> Run:
-    """The run on sessions that nobody has published; one that was begun in the folder goes on.
-
-    Its users are fresh too, except for the seven whom training shows, and except on tracks that
-    show a preference's label.
-
-    Args:
-        folder: The folder of the re-run.
-        track: The submission's track.
-        salt: The session seed; None draws one.
-    """
-    begun = sorted(folder.glob("fresh-[1-9]*"))
-    if salt is None and begun:
-        salt = int(begun[0].name.removeprefix("fresh-"))
-    if salt is None:
-        published = track in LABELLED_TRACKS
-        first, end = (PUBLISHED_USERS, MOST_SALT) if published else (FRESH_USERS, PUBLISHED_USERS)
-        salt = first + secrets.randbelow(end - first)
-    return Run(f"fresh-{salt}", salt)
 
 
 @dataclass(frozen=True)

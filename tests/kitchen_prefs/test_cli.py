@@ -5,8 +5,10 @@ import sys
 import textwrap
 
 import pytest
+import typer
 from typer.testing import CliRunner
 
+from kitchen_prefs import cli
 from kitchen_prefs.cli import command_line
 from kitchen_prefs.datasets import dataset_names
 
@@ -31,6 +33,21 @@ def run_program(*arguments, **environment):
         capture_output=True,
         text=True,
     )
+
+
+def test_control_c_is_said(monkeypatch, capsys):
+    app = typer.Typer()
+
+    @app.command()
+    def interrupted():
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(cli, "command_line", lambda: app)
+    monkeypatch.setattr(sys, "argv", ["kitchen-prefs"])
+    with pytest.raises(SystemExit) as ended:
+        cli.main()
+    assert ended.value.code == cli.STOPPED
+    assert "kitchen-prefs: stopped" in capsys.readouterr().err
 
 
 def test_list_names_every_data_set(home):

@@ -145,11 +145,19 @@ def test_what_is_no_demonstration_gets_one_sentence(server, tmp_path, content):
     for body, sentence in (
         (b"[", "does not follow the format"),
         (json.dumps(content | {"decisions": [0, 2, 2003]}).encode(), "refuses decision 3"),
-        (json.dumps(content | {"user": "<b>Ada</b>"}).encode(), "user: String should match"),
+        (json.dumps(content | {"user": "<b>Ada</b>"}).encode(), "user: a name has words of"),
     ):
         status, answer = ask(server, "POST", "/demonstrations", body)
         assert status == 400
         assert sentence in json.loads(answer)["error"]
+    assert files(tmp_path) == []
+
+
+def test_a_study_takes_its_own_demonstrations_alone(server, tmp_path, content):
+    server._study = "kitchen-2027"
+    status, answer = ask(server, "POST", "/demonstrations", json.dumps(content).encode())
+    assert status == 400
+    assert "serves the study kitchen-2027, and not no study" in answer
     assert files(tmp_path) == []
 
 
@@ -198,9 +206,11 @@ def test_the_command_says_what_is_saved_and_ends_with_control_c(tmp_path, conten
     connection.request("GET", "/")
     assert connection.getresponse().read() == b"<title>home demonstrations</title>"
     headers = {"Origin": f"http://127.0.0.1:{port}", "Content-Type": "application/json"}
-    connection.request("POST", "/demonstrations", json.dumps(content), headers)
+    participant = {"name": "home", "participant": "p1", "day": 1}
+    shown = json.dumps(content | {"user": None, "study": participant})
+    connection.request("POST", "/demonstrations", shown, headers)
     assert connection.getresponse().status == 201
-    assert "demonstration-0001.json: Ada, " in started.stdout.readline()
+    assert "demonstration-0001.json: home/p1, " in started.stdout.readline()
     started.send_signal(signal.SIGINT)
     said, errors = started.communicate(timeout=20)
     assert (started.returncode, errors) == (0, "")

@@ -7,7 +7,8 @@ import pytest
 
 from kitchen_prefs.simulation.sessions import FRESH_USERS, PUBLISHED_USERS, make_session
 from kitchen_prefs.splits import HELD_OUT_USERS, SEEN_USERS, SPLITS
-from kitchen_prefs_leaderboard.reruns import Rerunner, Run, fresh_run, rerun_submission
+from kitchen_prefs_leaderboard.rerun_plan import Run, fresh_run
+from kitchen_prefs_leaderboard.reruns import Rerunner, rerun_submission
 from kitchen_prefs_leaderboard.submission_writing import describe, policy_of, write_submission
 from kitchen_prefs_leaderboard.verification import Verification, read_verifications
 

@@ -37,6 +37,23 @@ def test_a_blocked_place_is_crossed_out_and_says_so(page):
     assert page.evaluate("yourState().held !== null")
 
 
+def test_every_place_has_a_name_of_its_own(page):
+    page.evaluate("[DOOR, TOP_RACK].forEach(youChoose)")
+    page.evaluate("youChoose(FIRST_DISH + counterDishes(yourState())[0])")
+    names = page.evaluate("choicesIn(yourState()).map((one) => nameOf(yourState(), one))")
+    assert len(set(names)) == len(names) > 10
+    assert "free place, front left of the top rack, 1 of " in " ".join(names)
+
+
+def test_a_refusal_that_is_said_again_is_another_text_for_a_screen_reader(page):
+    texts = []
+    for _ in range(2):
+        click(page, SINK)
+        texts.append(page.locator("#you-says").text_content())
+    assert texts[0] != texts[1]
+    assert texts[0] == texts[1].strip()
+
+
 def test_the_dish_in_hand_stands_at_the_nearest_free_place_under_the_pointer(page):
     page.evaluate("[DOOR, TOP_RACK].forEach(youChoose)")
     page.evaluate("youChoose(FIRST_DISH + counterDishes(yourState())[0])")

@@ -77,12 +77,25 @@ def test_what_another_page_kept_does_not_break_this_one(loose_page, change):
 def test_a_name_that_would_be_refused_is_not_downloaded(page):
     show(page, TWELVE[8])
     page.fill("#user", "<b>Ada</b>")
-    page.click("#download")
+    page.click("#downloads button")
     assert page.locator("#kept").inner_text() == ""
     assert not page.evaluate("byId('user').checkValidity()")
     for name in ("Ada", " Anna-Lena M. ", "O\u2019Brien", ""):
         page.fill("#user", name)
         assert page.evaluate("byId('user').checkValidity()")
+
+
+def test_each_of_two_demonstrations_can_be_downloaded(page):
+    show(page, TWELVE[8])
+    watch(page)
+    page.click("#once-more")
+    show(page, TWELVE[8])
+    sessions = []
+    for which in ("first", "second"):
+        with page.expect_download() as download:
+            page.click(f"text=Download {which}")
+        sessions.append(read_demonstration(download.value.path()).session)
+    assert len(set(sessions)) == 2
 
 
 @pytest.fixture

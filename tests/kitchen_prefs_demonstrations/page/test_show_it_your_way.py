@@ -40,7 +40,7 @@ def test_a_demonstration_by_mouse_is_followed_and_can_be_downloaded(page, tmp_pa
     page.fill("#user", "Ada")
     page.check("#may-be-kept")
     with page.expect_download() as download:
-        page.click("#download")
+        page.click("#downloads button")
     download.value.save_as(tmp_path / "ada.json")
     replayed = read_and_replay(tmp_path / "ada.json")
     assert replayed.decisions == page.evaluate("you.decisions")
@@ -125,6 +125,8 @@ def test_each_decision_says_what_of_the_visitor_it_follows(page):
     page.evaluate("while (ttpState().held === null) oneDecision()")
     rule = page.locator("#by-rule").inner_text()
     assert any(words in rule for words in ("on top, ", "at the bottom, "))
+    assert "not kept" not in rule
+    assert not page.evaluate("follows(ttpState(), SINK, ttp.preference)")
     attention = page.locator("#by-attention").inner_text()
     assert attention.startswith("you")
     assert attention.endswith("% of its attention)")

@@ -40,7 +40,7 @@ def test_a_study_asks_first_and_shows_no_policy(browser, file, tmp_path):
     assert page.locator("#again").is_disabled()
     assert "download the file" in page.locator("#you-hint").inner_text()
     with page.expect_download() as download:
-        page.click("#download")
+        page.click("#downloads button")
     saved = json.loads(download.value.path().read_text())
     assert saved["study"] == {"name": "kitchen-2027", "participant": "p07", "day": 2}
     assert saved["user"] is None

@@ -35,7 +35,10 @@ function nameOf(state, instance) {
   }
   const placement = instance - FIRST_PLACEMENT[state.out];
   const taken = isBlocked(state, state.out, placement) ? "blocked" : "free";
-  return `${taken} place, ${regionOf(placement)} of the ${state.out} rack`;
+  const region = regionOf(placement);
+  const there = placementsInHand(state).filter((other) => regionOf(other) === region);
+  const number = there.length > 1 ? `, ${there.indexOf(placement) + 1} of ${there.length}` : "";
+  return `${taken} place, ${region} of the ${state.out} rack${number}`;
 }
 
 /** Where in a rack a placement is, in thirds. */

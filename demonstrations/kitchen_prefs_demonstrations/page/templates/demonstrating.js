@@ -60,8 +60,10 @@ function whyTooLong() {
 }
 
 /** How many rows a prompt has for the decisions that are taken in these states. */
-const rowsRead = (steps) =>
-  steps.reduce((sum, { state }) => sum + observe(state, you.kitchen, 0).ids.length, 0);
+function rowsRead(steps) {
+  for (const step of steps) step.rows ??= observe(step.state, you.kitchen, 0).ids.length;
+  return steps.reduce((sum, { rows }) => sum + rows, 0);
+}
 
 function undo() {
   if (you.decisions.length === 0 || isFinished(yourState())) return;
@@ -85,7 +87,7 @@ function finishDemonstration() {
   you.shown.push({ session, decisions: [...decisions], refused });
   remember();
   byId("kept").textContent = "";
-  save();
+  save(you.shown.slice(-1));
   if (!study.name) startWatching(you.shown.length > 1 ? kitchens.next("load") : ttp.kitchen);
 }
 
@@ -97,13 +99,15 @@ function showYou(says, refused = false) {
   byId("undo").disabled = you.decisions.length === 0 || isFinished(state);
   byId("again").disabled = isFinished(state) && study.name !== null; // one demonstration a day
   byId("keep").hidden = you.shown.length === 0;
+  byId("downloads").replaceChildren(...downloadButtons());
 }
 
 /** What both sides show of where they are: "you" or "ttp". */
 function showStep(side, { kitchen, steps, decisions }, says, refused) {
   const { state } = steps.at(-1);
   showInThree(side, state, kitchen);
-  byId(`${side}-says`).textContent = says;
+  const same = byId(`${side}-says`).textContent === says;
+  byId(`${side}-says`).textContent = same ? `${says}\u00a0` : says; // a reader says what changes
   byId(`${side}-says`).classList.toggle("refused", refused);
   byId(`${side}-count`).textContent = countsOf(state, decisions.length);
   byId(`${side}-timeline`).replaceChildren(

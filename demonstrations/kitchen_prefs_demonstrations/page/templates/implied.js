@@ -1,7 +1,7 @@
 // What demonstrations imply by counting, and how well an episode follows that.
 //
 // Python has two readings beside this one: `implied_preference.py` looks for the one of the 2 x 7!
-// preferences that explains a demonstration, `habits.py` orders categories by their first dish.
+// preferences that explains a demonstration, `habits.py` looks for the order that most picks follow.
 // Where a demonstration is not consistent the three can differ.
 
 /**

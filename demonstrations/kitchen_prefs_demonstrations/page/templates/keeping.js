@@ -56,9 +56,19 @@ function demonstrationFile({ session, decisions }) {
   };
 }
 
-function download() {
+/** A button for each finished demonstration. */
+function downloadButtons() {
+  return you.shown.map((demonstration, number) => {
+    const which = you.shown.length > 1 ? ` ${ORDINALS[number] ?? `number ${number + 1}`}` : "";
+    const button = html("button", { type: "button" }, `Download${which}`);
+    button.addEventListener("click", () => download(demonstration));
+    return button;
+  });
+}
+
+function download(demonstration) {
   if (!byId("user").reportValidity()) return;
-  const file = demonstrationFile(you.shown.at(-1));
+  const file = demonstrationFile(demonstration);
   const { user, study: about, session } = file;
   const who = about ? `${about.participant}-day${about.day}` : user ?? "demonstration";
   const name = `${who.replace(/[^\p{L}\p{N}_-]+/gu, "-")}-${session}.json`;
@@ -71,10 +81,10 @@ function download() {
 
 let sent = Promise.resolve(); // one demonstration goes after the other
 
-/** Hand the last finished demonstration, or its new name or consent, to the serving program. */
-function save() {
-  const demonstration = you.shown.at(-1);
-  if (data.saveTo && demonstration) sent = sent.then(() => send(demonstration));
+/** Hand finished demonstrations, or their new name or consent, to the serving program. */
+function save(demonstrations) {
+  if (!data.saveTo) return;
+  for (const one of demonstrations) sent = sent.then(() => send(one));
 }
 
 async function send(demonstration) {

@@ -24,7 +24,6 @@ function listen() {
     undo,
     again: startAgain,
     "other-counter": () => showAnew("show"),
-    download,
     play,
     step: oneDecision,
     "ttp-other": watchAnother,
@@ -33,7 +32,7 @@ function listen() {
   };
   for (const [id, react] of Object.entries(clicks)) byId(id).addEventListener("click", react);
   byId("you").addEventListener("keydown", takeBack);
-  for (const id of ["user", "may-be-kept"]) byId(id).addEventListener("change", save);
+  for (const id of ["user", "may-be-kept"]) byId(id).addEventListener("change", () => save(you.shown));
 }
 
 /** Begin where a reload left off, or with the first kitchen. */

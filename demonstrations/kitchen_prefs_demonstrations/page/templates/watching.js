@@ -107,7 +107,8 @@ function showTTP(says, refused = false) {
 // What of the visitor a decision follows ----------------------------------------------------------
 
 function showFollowing(state, instance, attention) {
-  byId("by-rule").textContent = ruleBehind(state, instance, ttp.preference);
+  const kept = follows(state, instance, ttp.preference) ? "" : " \u2013 not kept here";
+  byId("by-rule").textContent = ruleBehind(state, instance, ttp.preference) + kept;
   byId("by-attention").textContent = attended(attention);
 }
 
@@ -118,6 +119,17 @@ function ruleBehind(state, instance, preference) {
   if (instance === DOOR) return state.doorOpen ? "closes when all is loaded" : "opens the door first";
   const rank = preference.racks.indexOf(RACK_OF[instance]);
   return `the ${RACK_OF[instance]} rack ${["first", "second"][rank]}`;
+}
+
+/** Whether a decision keeps to the rule: the dish's rack, its turn, the door at the end. */
+function follows(state, instance, preference) {
+  if (state.held !== null) {
+    const wanted = preference.rackOf[state.dishes[state.held].category];
+    return wanted === null || wanted === (instance === SINK ? "sink" : rackOfPlacement(instance));
+  }
+  if (instance === DOOR) return !state.doorOpen || (counterDishes(state).length === 0 && allArrived(state));
+  const turn = instance in RACK_OF ? null : dishesInTurn(state, preference);
+  return turn === null || turn.includes(instance - FIRST_DISH);
 }
 
 /** Which of the visitor's decisions the network weighs most, like ones together, and how much. */
