@@ -15,7 +15,6 @@ from kitchen_prefs.datasets import commands as datasets
 from kitchen_prefs.evaluation import commands as evaluation
 from kitchen_prefs.physics import commands as physics
 
-
 STOPPED = 130  # typer's exit code for Ctrl-C, of which it says nothing
 
 
