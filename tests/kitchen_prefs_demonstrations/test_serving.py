@@ -180,7 +180,9 @@ def test_a_taken_port_is_one_sentence(server, tmp_path):
 
 
 PROGRAM = """
-import sys, types
+import signal, sys, types
+# A shell's background job ignores Ctrl-C, and so would a program that the tests start there.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 page = types.ModuleType("kitchen_prefs_demonstrations.page.building")
 page.demonstration_page = lambda study, save_to: f"<title>{study} {save_to}</title>"
 sys.modules["kitchen_prefs_demonstrations.page"] = types.ModuleType("page")
