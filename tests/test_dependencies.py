@@ -36,6 +36,12 @@ def run_without_mujoco(code, *arguments):
     )
 
 
+@pytest.mark.xdist_group("a group")
+def test_tests_of_a_group_run_in_one_worker(request, worker_id):
+    """pytest-xdist appends the group's name to the test's; where it cannot, it groups nothing."""
+    assert worker_id == "master" or request.node.nodeid.endswith("@a group")
+
+
 def test_uv_and_pip_are_given_the_same_exact_versions():
     assert PROJECT["tool"]["uv"]["constraint-dependencies"] == PINS
 

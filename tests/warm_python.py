@@ -14,6 +14,8 @@ import tempfile
 from importlib.util import find_spec
 from pathlib import Path
 
+import pytest
+
 SLOW_TO_IMPORT = [
     *("torch", "torch._dynamo", "torch.distributed", "torchvision"),
     *("pandas", "pyarrow.dataset", "scipy.spatial.transform", "stable_baselines3", "av"),
@@ -37,7 +39,10 @@ def run(*arguments, cwd=None, env=None):
         where = (str(cwd or os.getcwd()), dict(os.environ if env is None else env))
         # Given names of files, as a forked process has none of the descriptors of this one.
         process = _context.Process(target=_run, args=(list(map(str, arguments)), *where, outputs))
-        process.start()
+        with pytest.MonkeyPatch.context() as patch:
+            # The first start starts the server, which no path of a test's programs may change.
+            patch.delenv("PYTHONPATH", raising=False)
+            process.start()
         process.join()
         stdout, stderr = (path.read_text(errors="replace") for path in outputs)
     return subprocess.CompletedProcess(arguments, process.exitcode, stdout, stderr)

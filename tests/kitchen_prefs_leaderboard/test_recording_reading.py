@@ -31,7 +31,12 @@ for split in {TEST_SPLITS!r}:
     main()
 """
 
-pytestmark = [pytest.mark.lerobot, pytest.mark.slow, pytest.mark.usefixtures("few_sessions")]
+pytestmark = [
+    pytest.mark.xdist_group("recordings"),
+    pytest.mark.lerobot,
+    pytest.mark.slow,
+    pytest.mark.usefixtures("few_sessions"),
+]
 
 
 @pytest.fixture(scope="session")

@@ -27,7 +27,7 @@ SUBMIT = (
     *("--author=A. Author", "--author=B. Author", *SYMBOLIC),
 )
 
-pytestmark = pytest.mark.usefixtures("few_sessions")
+pytestmark = [pytest.mark.xdist_group("submitted"), pytest.mark.usefixtures("few_sessions")]
 
 
 @pytest.fixture(scope="session")

@@ -10,6 +10,7 @@ import torch
 import warm_python
 import yaml
 from safetensors.torch import load_file
+from short_splits import OF_PROGRAMS, SESSIONS
 
 from kitchen_prefs.datasets import make_dataset
 from kitchen_prefs.evaluation.episode_files import read_episodes
@@ -47,16 +48,28 @@ def home(made_once):
     return made_once("lerobot_home", fill)
 
 
-def run(home, module, *arguments):
-    environment = os.environ | {
-        "HF_LEROBOT_HOME": str(home),
-        "HF_DATASETS_CACHE": str(home / "cache"),
-        "HF_HUB_OFFLINE": "1",
-        "OMP_NUM_THREADS": "1",
-    }
+def run(home, module, *arguments, **variables):
+    environment = (
+        os.environ
+        | variables
+        | {
+            "HF_LEROBOT_HOME": str(home),
+            "HF_DATASETS_CACHE": str(home / "cache"),
+            "HF_HUB_OFFLINE": "1",
+            "OMP_NUM_THREADS": "1",
+        }
+    )
     done = warm_python.run("-m", module, *arguments, env=environment, cwd=home)
     assert done.returncode == 0, done.stderr[-3000:]
     return done.stderr + done.stdout
+
+
+def evaluate(home, policy, out):
+    """Roll a policy out on six sessions; what came of it."""
+    command = ("evaluate", *policy, "--split=noisy", f"--out={out}")
+    run(home, "kitchen_prefs.cli", *command, PYTHONPATH=str(OF_PROGRAMS))
+    assert len(read_episodes(out / "noisy.jsonl")) == SESSIONS
+    return json.loads((out / "noisy.json").read_text())
 
 
 @pytest.fixture(scope="session")
@@ -125,10 +138,7 @@ def test_lerobot_eval_rolls_out_a_checkpoint(home, trained):
 def test_evaluate_rolls_out_a_checkpoint_and_the_expert(home, trained):
     checkpoint = f"--policy.path={trained}/checkpoints/000004/pretrained_model"
     for policy in ((checkpoint,), ("--policy.type=rules", "--policy.rule=expert")):
-        out = home / policy[-1].replace("/", "-")
-        arguments = ("evaluate", *policy, "--split=noisy", f"--out={out}", "--batch-size=30")
-        run(home, "kitchen_prefs.cli", *arguments)
-        assert len(read_episodes(out / "noisy.jsonl")) == 60
+        evaluate(home, policy, home / policy[-1].replace("/", "-"))
 
 
 @pytest.mark.lerobot
@@ -176,9 +186,7 @@ def train_and_roll_out(home, recipe, *small):
     log = run(home, TRAIN, config, data, output, *small, "--batch_size=4", "--steps=2", *COMMON)
     assert "step:2" in log
     policy = f"--policy.path={home / recipe / 'checkpoints' / 'last' / 'pretrained_model'}"
-    out = f"--out={home / recipe / 'evaluation'}"
-    run(home, "kitchen_prefs.cli", "evaluate", policy, "--split=noisy", out, "--batch-size=30")
-    assert len(read_episodes(home / recipe / "evaluation" / "noisy.jsonl")) == 60
+    evaluate(home, (policy,), home / recipe / "evaluation")
 
 
 @pytest.mark.lerobot
@@ -191,10 +199,7 @@ def test_the_graph_network_resumes_and_rolls_out_on_the_privileged_track(home):
     checkpoint = home / "gnn" / "checkpoints" / "last" / "pretrained_model"
     config = f"--config_path={checkpoint / 'train_config.json'}"
     assert "step:3" in run(home, TRAIN, config, "--resume=true", "--steps=3")
-    policy, out = f"--policy.path={checkpoint}", f"--out={home / 'gnn-evaluation'}"
-    run(home, "kitchen_prefs.cli", "evaluate", policy, "--split=noisy", out, "--batch-size=30")
-    summary = json.loads((home / "gnn-evaluation" / "noisy.json").read_text())
-    assert summary["episodes"] == 60
+    summary = evaluate(home, (f"--policy.path={checkpoint}",), home / "gnn-evaluation")
     assert summary["conditions"]["track"] == "privileged"
 
 
