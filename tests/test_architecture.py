@@ -132,9 +132,10 @@ LEADERBOARD = {
     "judgement": (
         "scoring submission_format verification kitchen_prefs.metrics kitchen_prefs.splits"
     ),
+    "rerun_plan": "kitchen_prefs.evaluation kitchen_prefs.simulation kitchen_prefs.splits",
     "reruns": (
-        "judgement scoring verification kitchen_prefs.evaluation kitchen_prefs.metrics "
-        "kitchen_prefs.simulation kitchen_prefs.splits"
+        "judgement rerun_plan scoring verification kitchen_prefs.evaluation kitchen_prefs.metrics "
+        "kitchen_prefs.splits"
     ),
     "ranking": "judgement scoring submission_format verification kitchen_prefs.metrics",
     "score_formats": "scoring verification kitchen_prefs.metrics",
