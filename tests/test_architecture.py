@@ -24,6 +24,7 @@ BENCHMARK = {
     "metrics": "",
     "splits": "utils",
     "simulation": "preferences splits",
+    "people": "preferences simulation utils",
     "physics": "preferences simulation splits utils",
     "rendering": "physics preferences simulation utils",
     "envs": "instances metrics preferences rendering simulation splits utils",

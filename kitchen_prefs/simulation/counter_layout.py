@@ -2,7 +2,6 @@
 
 import numpy as np
 
-from kitchen_prefs.preferences import CATEGORIES
 from kitchen_prefs.simulation import layout
 
 DISH_GAP = 0.01  # m between dishes on the counter: fingers fit in
@@ -11,17 +10,22 @@ POSE_DECIMALS = 4  # a tenth of a millimetre: no machine's last digit shows in t
 TRIES_PER_DISH = 200  # before the whole counter is laid anew
 
 
-def lay_counter(category: np.ndarray, generator: np.random.Generator) -> np.ndarray:
-    """Draw upright poses on the counter, (n, 7), no two overlapping."""
+def lay_counter(extents: np.ndarray, generator: np.random.Generator) -> np.ndarray:
+    """Draw upright poses on the counter, (n, 7), no two overlapping.
+
+    Args:
+        extents: The full extents of each dish, (n, 3) m; at most twenty fit for certain.
+        generator: Draws the poses.
+    """
     while True:
-        poses = _try_to_lay(category, generator)
+        poses = try_to_lay_counter(extents, generator)
         if poses is not None:
             return poses
 
 
-def _try_to_lay(category: np.ndarray, generator: np.random.Generator) -> np.ndarray | None:
-    poses = np.zeros((len(category), 7), dtype=np.float32)
-    extents = np.array([layout.EXTENTS[CATEGORIES[c]] for c in category])  # (n, 3)
+def try_to_lay_counter(extents: np.ndarray, generator: np.random.Generator) -> np.ndarray | None:
+    """The same, but None where a dish finds no room beside the others that were laid."""
+    poses = np.zeros((len(extents), 7), dtype=np.float32)
     radius = np.hypot(extents[:, 0], extents[:, 1]) / 2 + DISH_GAP / 2
     laid: list[tuple[np.ndarray, np.ndarray, float]] = []  # corners, centre, radius
     for dish in np.argsort(-radius, kind="stable"):  # the largest first: they find room

@@ -60,7 +60,7 @@ class Dishes:
     present: int
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class PlacementTable:
     """The placements of both racks when they are pulled out, in the world.
 
@@ -99,8 +99,13 @@ def rack_position(rack: str, out: bool) -> tuple[float, float, float]:
 class Kitchen:
     """One session's kitchen.
 
+    Args:
+        dishes: The session's dishes.
+        table: Where they can stand; the first tier's placements by default.
+
     Attributes:
         dishes: The session's dishes.
+        table: Where they can stand.
         door_open: Whether the door is open.
         open_rack: The rack that is pulled out, or None.
         held: The dish in hand, or None. It stays where it was picked until it is placed.
@@ -110,9 +115,10 @@ class Kitchen:
         completed: Completed actions so far: toggles that worked and finished places.
     """
 
-    def __init__(self, dishes: Dishes) -> None:
+    def __init__(self, dishes: Dishes, table: PlacementTable | None = None) -> None:
         n = len(dishes.category)
         self.dishes = dishes
+        self.table = table or placement_table()
         self.door_open = False
         self.open_rack: str | None = None
         self.held: int | None = None
@@ -123,8 +129,7 @@ class Kitchen:
         self.completed = 0
         self._arrived = dishes.present
         self._arriving = False
-        self._table = placement_table()
-        self._blocked = {rack: np.zeros(len(self._table.category), dtype=bool) for rack in RACKS}
+        self._blocked = {rack: np.zeros(len(self.table.category), dtype=bool) for rack in RACKS}
 
     # What is visible -------------------------------------------------------------------------
 
@@ -139,11 +144,11 @@ class Kitchen:
         """The placements of the category in hand in the pulled-out rack, free or not, (k,) int."""
         if self.held is None or self.open_rack is None:
             return np.empty(0, dtype=int)
-        return self._table.of_category[self.dishes.category[self.held]]
+        return self.table.of_category[self.dishes.category[self.held]]
 
     def free(self, rack: str, category: int) -> np.ndarray:
         """The placements of a category that no dish in the rack blocks, (k,) int."""
-        placements = self._table.of_category[category]
+        placements = self.table.of_category[category]
         return placements[~self._blocked[rack][placements]]
 
     @property
@@ -240,8 +245,8 @@ class Kitchen:
         rack, placement = self.open_rack, instance - FIRST_PLACEMENT[self.open_rack]
         self.location[self.held] = IN_RACK[rack]
         self.placement[self.held] = placement
-        self.pose[self.held] = self._table.pose[rack][placement]
-        self._blocked[rack] |= self._table.blocks[placement]
+        self.pose[self.held] = self.table.pose[rack][placement]
+        self._blocked[rack] |= self.table.blocks[placement]
 
     def _complete_action(self) -> None:
         self.completed += 1

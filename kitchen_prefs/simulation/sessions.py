@@ -20,6 +20,7 @@ from kitchen_prefs.preferences import (
     preference_from_number,
     preference_number,
 )
+from kitchen_prefs.simulation import layout
 from kitchen_prefs.simulation.counter_layout import lay_counter
 from kitchen_prefs.simulation.expert import ExpertTrajectory, roll_out_expert
 from kitchen_prefs.simulation.kitchen import Dishes, Kitchen
@@ -213,4 +214,5 @@ def _draw_dishes(
         names += once + list(generator.choice(order, size=count - len(once)))
     category = np.array([CATEGORIES.index(name) for name in generator.permutation(names)], np.int8)
     present = round(generator.uniform(LEAST_PRESENT, 1) * len(category))
-    return Dishes(category, lay_counter(category, generator), max(present, 1))
+    extents = np.array([layout.EXTENTS[CATEGORIES[c]] for c in category])  # (n, 3)
+    return Dishes(category, lay_counter(extents, generator), max(present, 1))

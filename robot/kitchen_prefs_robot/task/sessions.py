@@ -10,8 +10,8 @@ from zlib import crc32
 
 import numpy as np
 
-from kitchen_prefs.preferences import CATEGORIES
 from kitchen_prefs.simulation.counter_layout import lay_counter
+from kitchen_prefs.simulation.layout import EXTENTS
 from kitchen_prefs.utils.suggestions import suggest
 from kitchen_prefs_robot.task.preferences import LABELS, PREFERENCES, DrawerPreference
 from kitchen_prefs_robot.task.state import DrawersState, SeenDish
@@ -96,9 +96,9 @@ def _draw_categories(
 
 
 def _lay(names: list[str], generator: np.random.Generator) -> DrawersState:
-    category = np.array([CATEGORIES.index(name) for name in names], dtype=np.int8)
+    extents = np.array([EXTENTS[name] for name in names])  # (n, 3)
     dishes = (
         SeenDish(name, tuple(pose[:3]), tuple(pose[3:]), None)
-        for name, pose in zip(names, lay_counter(category, generator).tolist(), strict=True)
+        for name, pose in zip(names, lay_counter(extents, generator).tolist(), strict=True)
     )
     return DrawersState(tuple(dishes), opened=None, in_hand=None)

@@ -1,0 +1,217 @@
+"""Session i of a split of the second tier: its user, its dishes and its prompts.
+
+A session is a pure function of (data version, split, salt, i); the salt is the session seed, 0 for
+the published sessions. The dishes are drawn without a look at the user. Of a certified split the
+prompts are drawn until they tell enough of the session; the few users of whom no prompt does are
+drawn anew, together with their dishes. In training the sessions of a user prompt each other, so
+they are not chosen: sessions that tell much of a user would give rules away by what they contain.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property, lru_cache
+from itertools import count
+from zlib import crc32
+
+import numpy as np
+
+from kitchen_prefs.people.attributes import DescribedDishes, draw_dishes
+from kitchen_prefs.people.certificates import certificate
+from kitchen_prefs.people.evidence import Evidence, evidence_of
+from kitchen_prefs.people.expert import roll_out_plan
+from kitchen_prefs.people.posterior import Posterior
+from kitchen_prefs.people.splits import (
+    COUNTS,
+    PEOPLE_DATA_VERSION,
+    PeopleSplit,
+    get_people_split,
+)
+from kitchen_prefs.people.user_sampling import COMPOSED, pairs_of, sample_polled_user, sample_user
+from kitchen_prefs.people.users import LoadingPlan, User
+from kitchen_prefs.people.zones import SINK_ZONE, ZONES
+from kitchen_prefs.preferences import CATEGORIES
+from kitchen_prefs.simulation.expert import ExpertTrajectory
+from kitchen_prefs.simulation.kitchen import Kitchen, PlacementTable, placement_table
+
+# Sets of prompts that are drawn before the user is drawn anew; one in four is certified.
+ATTEMPTS = 40
+
+
+@dataclass(frozen=True, eq=False)
+class UserDemonstration:
+    """One way in which a user loads some dishes.
+
+    Attributes:
+        dishes: The dishes.
+        plan: How they are loaded.
+    """
+
+    dishes: DescribedDishes
+    plan: LoadingPlan
+
+    @cached_property
+    def trajectory(self) -> ExpertTrajectory:
+        """What the expert does; its kitchen is finished and not to be changed."""
+        return roll_out_plan(Kitchen(self.dishes, people_table()), self.plan)
+
+    @cached_property
+    def evidence(self) -> Evidence:
+        """What it says of the user."""
+        return evidence_of(self.dishes, people_table(), self.trajectory.decisions)
+
+
+@dataclass(frozen=True, eq=False)
+class PeopleSession:
+    """One session of the second tier.
+
+    Attributes:
+        split: Its split's name.
+        index: Its number in the split.
+        salt: The session seed; 0 for the published sessions.
+        user: The user who is to be served.
+        dishes: The dishes, in the order in which they arrive.
+        prompts: The demonstrations that prompt an episode.
+        evening: Which of the prompts is of the user; 0 but where they are of two users.
+    """
+
+    split: str
+    index: int
+    salt: int
+    user: User
+    dishes: DescribedDishes
+    prompts: tuple[UserDemonstration, ...]
+    evening: int = 0
+
+    @cached_property
+    def expert(self) -> UserDemonstration:
+        """How the user loads the session's dishes."""
+        return UserDemonstration(self.dishes, self.user.plan(self.dishes))
+
+    def generator(self, purpose: str) -> np.random.Generator:
+        """A fresh generator for one purpose, the same in every process."""
+        return _generator(self.split, self.salt, self.index, purpose)
+
+
+def people_table() -> PlacementTable:
+    """Where the dishes of the second tier can stand."""
+    return placement_table()
+
+
+@lru_cache(maxsize=4096)
+def make_people_session(split: str, index: int, salt: int = 0) -> PeopleSession:
+    """Make one session.
+
+    Args:
+        split: A split's name.
+        index: 0 <= index < the split's size.
+        salt: The session seed; 0 gives the published session.
+
+    Returns:
+        The session, the same in every process.
+
+    Raises:
+        ValueError: If the split, the index or the salt does not exist.
+    """
+    where = get_people_split(split)
+    if not 0 <= index < where.sessions:
+        raise ValueError(f"Split {split!r} has the sessions 0..{where.sessions - 1}, not {index}.")
+    if salt < 0:
+        raise ValueError(f"A salt is a natural number, not {salt}.")
+    if where.sessions_each > 1:
+        return _sessions_of_user(where, where.user(index), salt)[index % where.sessions_each]
+    for attempt in count():
+        session = _try_session(where, index, salt, attempt)
+        if session is not None:
+            return session
+    raise AssertionError("Unreachable: some user is certified.")
+
+
+@lru_cache(maxsize=4096)
+def _sessions_of_user(split: PeopleSplit, number: int, salt: int) -> tuple[PeopleSession, ...]:
+    """The sessions of a user who has several; each is prompted by all the others."""
+    first = number * split.sessions_each
+    user = _draw_user(split, _generator(split.name, salt, first, "user"))
+    indices = range(first, first + split.sessions_each)
+    dishes = [
+        draw_dishes(split.count(i), _generator(split.name, salt, i, "dishes")) for i in indices
+    ]
+    shown = [_shown(user, one) for one in dishes]
+    return tuple(
+        PeopleSession(split.name, i, salt, user, own.dishes, tuple(o for o in shown if o != own))
+        for i, own in zip(indices, shown, strict=True)
+    )
+
+
+def _try_session(split: PeopleSplit, index: int, salt: int, attempt: int) -> PeopleSession | None:
+    """A session with its prompts; None if no prompts of its user are certified."""
+
+    def generator(purpose: str) -> np.random.Generator:
+        return _generator(split.name, salt, index, f"{purpose} {attempt}")
+
+    user = _draw_user(split, generator("user"))
+    dishes = draw_dishes(split.count(index), generator("dishes"))
+    session = PeopleSession(split.name, index, salt, user, dishes, ())
+    for again in range(ATTEMPTS):
+        prompts = _draw_prompts(split, user, generator(f"prompts {again}"))
+        if not split.certified or _certified(prompts, dishes):
+            if split.evening:
+                return _with_somebody_else(session, split, prompts, generator("somebody else"))
+            return replace(session, prompts=prompts)
+    return None
+
+
+def _draw_prompts(
+    split: PeopleSplit, user: User, generator: np.random.Generator
+) -> tuple[UserDemonstration, ...]:
+    """Draw the demonstrations of a user that prompt an episode."""
+    prompts = []
+    for _ in range(1 if split.evening else split.prompts):
+        lacking = generator.choice(len(CATEGORIES), split.lacking, replace=False)
+        dishes = draw_dishes(int(generator.choice(COUNTS)), generator, tuple(lacking.tolist()))
+        prompts.append(_shown(user, dishes, split.slips, generator))
+    return tuple(prompts)
+
+
+def _with_somebody_else(
+    session: PeopleSession,
+    split: PeopleSplit,
+    prompts: tuple[UserDemonstration, ...],
+    generator: np.random.Generator,
+) -> PeopleSession:
+    """The session with another user's demonstration before or after the prompt."""
+    other = _draw_prompts(split, _draw_user(split, generator), generator)
+    evening = int(generator.integers(2))
+    return replace(session, prompts=(*other, *prompts)[:: 1 if evening else -1], evening=evening)
+
+
+def _draw_user(split: PeopleSplit, generator: np.random.Generator) -> User:
+    """Draw a user of a split's kind."""
+    while True:
+        user = sample_polled_user(generator) if split.polled else sample_user(generator)
+        if bool(pairs_of(user) & COMPOSED) == split.composed:
+            return user
+
+
+def _shown(
+    user: User,
+    dishes: DescribedDishes,
+    slips: float = 0.0,
+    generator: np.random.Generator | None = None,
+) -> UserDemonstration:
+    """How a user loads some dishes, with slips into other zones at a rate."""
+    plan = user.plan(dishes)
+    if generator is None or slips == 0:
+        return UserDemonstration(dishes, plan)
+    slipped = generator.random(len(plan.zones)) < slips
+    elsewhere = (plan.zones + generator.integers(1, len(ZONES), len(plan.zones))) % len(ZONES)
+    elsewhere = np.where(plan.zones == SINK_ZONE, elsewhere % len(ZONES), elsewhere)
+    return UserDemonstration(dishes, replace(plan, zones=np.where(slipped, elsewhere, plan.zones)))
+
+
+def _certified(prompts: Sequence[UserDemonstration], dishes: DescribedDishes) -> bool:
+    return certificate(Posterior([prompt.evidence for prompt in prompts]), dishes).holds
+
+
+def _generator(split: str, salt: int, index: int, purpose: str) -> np.random.Generator:
+    seed = [PEOPLE_DATA_VERSION, crc32(split.encode()), salt, index, crc32(purpose.encode())]
+    return np.random.default_rng(seed)
