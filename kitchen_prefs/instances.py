@@ -29,6 +29,12 @@ IS_OBJECT = 11
 IS_PLACE = 12
 COLUMNS = 13
 
+# The second tier's rows have eight more: what a dish is beside its category.
+RGB = slice(13, 16)
+MATERIAL = slice(16, 20)  # one-hot, in the order of people.attributes.MATERIALS
+SOIL = 20
+DESCRIBED_COLUMNS = 21
+
 # The largest place set: door, two racks, twenty dishes, 48 placements of a category and the sink.
 CAPACITY = 3 + 20 + 48 + 1
 FLAT_SIZE = CAPACITY * COLUMNS

@@ -27,7 +27,7 @@ BENCHMARK = {
     "people": "preferences simulation utils",
     "physics": "preferences simulation splits utils",
     "rendering": "physics preferences simulation utils",
-    "envs": "instances metrics preferences rendering simulation splits utils",
+    "envs": "instances metrics people preferences rendering simulation splits utils",
     "datasets": "envs instances metrics preferences rendering simulation splits utils",
     "evaluation": "datasets envs metrics simulation splits utils",
     "web": "preferences simulation splits",

@@ -3,14 +3,8 @@
 The gymnasium environment and the leaderboard's replay both use it.
 """
 
-import hashlib
-from collections.abc import Sequence
-
-import numpy as np
-
-from kitchen_prefs import instances
-from kitchen_prefs.envs.actions import nearest_row
 from kitchen_prefs.envs.observations import Observer
+from kitchen_prefs.envs.simulator import Simulator
 from kitchen_prefs.metrics import Episode
 from kitchen_prefs.preferences import CATEGORIES, RACKS
 from kitchen_prefs.simulation import kitchen as k
@@ -19,111 +13,35 @@ from kitchen_prefs.simulation.kitchen import Kitchen, Location, decision_kind
 from kitchen_prefs.simulation.sessions import Session, expert_trajectory
 from kitchen_prefs.splits import get_split
 
-Action = np.ndarray | Sequence[float]  # a pose: position (m) and quaternion (wxyz), (7,)
-
-LIMIT_FACTOR = 2  # an episode ends at twice the expert's number of decisions
 FAILED_PICKS = 0.05  # one pick in twenty fails where grasping is noisy (design of `noisy`)
 
 
-class EpisodeSimulator:
-    """A session from its start to where it is now.
+class EpisodeSimulator(Simulator):
+    """A session of the first tier from its start to where it is now.
 
     Args:
         session: What is simulated.
 
     Attributes:
         session: What is simulated.
-        kitchen: Its kitchen.
         view: The kitchen as the expert sees it.
-        observer: Makes the observations.
-        observation: The observation of the next decision.
-        decisions: The instances chosen so far.
-        refused: For each of them, whether it could not be carried out.
-        limit: The number of decisions at which the episode is truncated.
     """
 
     def __init__(self, session: Session) -> None:
         noisy = get_split(session.split).noisy
+        kitchen = Kitchen(session.dishes)
+        noise = session.generator("noise") if noisy else None
+        observer = Observer(kitchen, session.generator("order"), noise)
+        super().__init__(kitchen, observer, len(expert_trajectory(session).decisions))
         self.session = session
-        self.kitchen = Kitchen(session.dishes)
-        self.view = KitchenView(self.kitchen)
-        self.decisions: list[int] = []
-        self.refused: list[bool] = []
-        self.limit = LIMIT_FACTOR * len(expert_trajectory(session).decisions)
-        self._actions: list[tuple[float, ...]] = []
+        self.view = KitchenView(kitchen)
         self._closed_early = 0
         self._right_turns = self._turns = 0
         self._grasp = session.generator("grasp") if noisy else None
-        noise = session.generator("noise") if noisy else None
-        self.observer = Observer(self.kitchen, session.generator("order"), noise)
-        self.observation = self.observer.observe()
 
-    @property
-    def terminated(self) -> bool:
-        """Whether everything is packed and closed."""
-        return self.kitchen.finished
-
-    @property
-    def truncated(self) -> bool:
-        """Whether the limit of decisions is reached before that."""
-        return not self.terminated and len(self.decisions) >= self.limit
-
-    def choose(self, action: Action) -> tuple[int, float]:
-        """The instance that an action chooses now, and how far away it is.
-
-        Raises:
-            ValueError: If the action has another shape or is not finite.
-        """
-        row, distance = nearest_row(self.observation.rows, action)
-        return int(self.observation.ids[row]), distance
-
-    def act(self, action: Action) -> str:
-        """Carry out the decision that an action chooses; see `choose` and `decide`."""
-        return self.decide(self.choose(action)[0], action)
-
-    def decide(self, instance: int, action: Action) -> str:
-        """Carry out one decision and observe again.
-
-        Args:
-            instance: What the action chooses.
-            action: The action, which is recorded.
-
-        Returns:
-            Why the kitchen did not carry it out, or an empty string.
-        """
-        early = instance == k.DOOR and self._door_closes_early()
-        turn = self._dishes_in_turn()
-        refusal = self._carry_out(instance)
-        self.decisions.append(instance)
-        self.refused.append(bool(refusal))
-        self._actions.append(tuple(float(value) for value in action))
-        self._closed_early += early and not refusal
-        if turn is not None and not refusal:
-            self._turns += 1
-            self._right_turns += instance - k.FIRST_DISH in turn
-        self.observation = self.observer.observe()
-        return refusal
-
-    def expert_action(self) -> np.ndarray:
-        """The action with which the expert would continue from here, (7,)."""
-        row = self.observation.row_of(choose(self.view, self.session.preference))
-        return self.observation.rows[row, instances.POSE]
-
-    def feasible_rows(self) -> np.ndarray:
-        """The rows that the kitchen would carry out now, zero-padded, (N,) bool.
-
-        An oracle, which no track shows: it knows, for one, which placements are blocked.
-        """
-        feasible = np.zeros(instances.CAPACITY, dtype=bool)
-        for row in np.flatnonzero(instances.choosable(self.observation.rows)):
-            feasible[row] = not self.kitchen.refusal(int(self.observation.ids[row]))
-        return feasible
-
-    def digest(self) -> str:
-        """A hash of the kitchen's state and of all that was decided, the same in every process."""
-        sha = hashlib.sha256(self.kitchen.digest().encode())
-        sha.update(repr((self.decisions, self.refused)).encode())
-        return sha.hexdigest()
+    def expert_instance(self) -> int:
+        """The instance that the expert would choose now."""
+        return choose(self.view, self.session.preference)
 
     def episode(self) -> Episode:
         """The facts of the episode so far, from which every metric is computed."""
@@ -155,14 +73,25 @@ class EpisodeSimulator:
             closed_early=self._closed_early,
             closed=kitchen.closed,
             finished=kitchen.finished,
-            actions=tuple(self._actions),
+            actions=tuple(self.actions),
         )
+
+    def _before(self, instance: int) -> tuple[bool, list[int] | None]:
+        """Whether the decision closes the door early, and the dishes whose turn it is."""
+        return instance == k.DOOR and self.door_closes_early(), self._dishes_in_turn()
+
+    def _count(self, instance: int, before: tuple[bool, list[int] | None]) -> None:
+        early, turn = before
+        self._closed_early += early
+        if turn is not None:
+            self._turns += 1
+            self._right_turns += instance - k.FIRST_DISH in turn
 
     def _carry_out(self, instance: int) -> str:
         fails = self._grasp is not None and self._grasp.random() < FAILED_PICKS
         if fails and instance >= k.FIRST_DISH and self.kitchen.held is None:
             return "The grasp failed."
-        return self.kitchen.decide(instance)
+        return super()._carry_out(instance)
 
     def _dishes_in_turn(self) -> list[int] | None:
         """The dishes of the lowest rank that wait for the rack that is out.
@@ -181,10 +110,6 @@ class EpisodeSimulator:
         if len(set(ranks.values())) < 2:
             return None
         return [dish for dish, rank in ranks.items() if rank == min(ranks.values())]
-
-    def _door_closes_early(self) -> bool:
-        waiting = len(self.kitchen.counter) > 0 or not self.kitchen.all_arrived
-        return self.kitchen.door_open and waiting
 
 
 def _standing(kitchen: Kitchen, session: Session) -> tuple[tuple[int, int], int]:

@@ -1,10 +1,11 @@
 """The exact reader of the grammar: how probable each rule is after demonstrations of a user.
 
 Rules about zones and rules about order are independent of each other given a demonstration. Zones:
-the sum over hand wash, exceptions, base, overflow and first rack of prior times likelihood, which
-is 0 or 1 as the expert is deterministic. The zones of the classes of a base scheme are counted, not
-listed: with the sets Z_c of zones that class c may have, the maps from classes to zones that lie in
-a set S are prod_c |Z_c & S|, and inclusion and exclusion gives those that use enough zones.
+the sum over hand wash, exceptions, base, overflow and first rack of prior times likelihood. The
+likelihood is a product over the dishes; without slips its factors are 0 or 1, as the expert is
+deterministic. The zones of the classes of a base scheme are summed, not listed: with the likelihood
+w_c(z) that class c has zone z, the maps from classes to zones in a set S have the sum
+prod_c sum_{z in S} w_c(z), and inclusion and exclusion gives those that use enough zones.
 """
 
 from collections import Counter
@@ -31,18 +32,19 @@ from kitchen_prefs.people.zones import LONGEST, OVERFLOWS, SINK_ZONE, ZONES
 from kitchen_prefs.preferences import RACKS
 
 SETS = range(2 ** len(ZONES))  # sets of zones as bits
-SIZE = np.array([[(one & other).bit_count() for other in SETS] for one in SETS])  # (16, 16)
 HAS = np.array([[bool(one >> zone & 1) for zone in range(len(ZONES))] for one in SETS])  # (16, 4)
+IMPOSSIBLE = 1e-200  # its logarithm stands for that of 0
+NEGLIGIBLE = 1e-9  # hypotheses that weigh less than this share of the heaviest are left out
 
 
 @dataclass(frozen=True, eq=False)
 class _Exceptions:
-    """Which exceptions explain what was shown, given hand wash, overflow and first rack.
+    """How well exceptions explain what was shown, given hand wash, overflow and first rack.
 
     A hypothesis is none, one or two exceptions, K of them; the masks are of all dishes.
 
     Attributes:
-        weight: The prior times the share of zones that explain, (K,).
+        weight: The prior times the mean likelihood of the zones, (K,).
         first: The dishes of the first exception, (K, N) bool.
         second: The dishes of the second that are none of the first, (K, N) bool.
         first_zone: The zone of the first, how probable each is, (K, 4).
@@ -61,14 +63,16 @@ class Posterior:
 
     Args:
         evidence: Of each demonstration; with none, this is the prior.
+        slips: The share of dishes that the user puts into another zone by mistake.
     """
 
-    def __init__(self, evidence: Sequence[Evidence]) -> None:
+    def __init__(self, evidence: Sequence[Evidence], slips: float = 0.0) -> None:
         self.evidence = joined([NOTHING, *evidence])
+        self.slips = slips
 
     def zones(self, dishes: DescribedDishes) -> np.ndarray:
         """How probable each zone is for each dish, the last washed by hand, (m, 5)."""
-        reading = _ZoneReading(self.evidence, dishes)
+        reading = _ZoneReading(self.evidence, self.slips, dishes)
         return reading.zones / reading.zones.sum(axis=1, keepdims=True)
 
     def earlier(self, dishes: DescribedDishes) -> np.ndarray:
@@ -93,7 +97,7 @@ class Posterior:
 
     def guess(self, dishes: DescribedDishes) -> LoadingPlan:
         """How the user would most probably load some dishes."""
-        reading = _ZoneReading(self.evidence, dishes)
+        reading = _ZoneReading(self.evidence, self.slips, dishes)
         return LoadingPlan(
             zones=reading.zones.argmax(axis=1),
             ranks=self._most_probable_ranks(dishes),
@@ -135,7 +139,7 @@ class _ZoneReading:
         first: The weight of each rack as the first, (2,).
     """
 
-    def __init__(self, evidence: Evidence, dishes: DescribedDishes) -> None:
+    def __init__(self, evidence: Evidence, slips: float, dishes: DescribedDishes) -> None:
         self.zones = np.zeros((len(dishes.category), LONGEST))
         self.overflow = np.zeros(len(OVERFLOWS))
         self.first = np.zeros(len(RACKS))
@@ -146,71 +150,69 @@ class _ZoneReading:
             for overflow in range(len(OVERFLOWS)):
                 allowed = evidence.allowed[first, overflow]  # (n, 5)
                 if allowed.tobytes() not in known:
-                    known[allowed.tobytes()] = self._read(allowed)
+                    known[allowed.tobytes()] = self._read(_log_likelihood(allowed, slips))
                 zones, weight = known[allowed.tobytes()]
                 self.zones += zones
                 self.overflow[overflow] += weight
                 self.first[first] += weight
 
-    def _read(self, allowed: np.ndarray) -> tuple[np.ndarray, float]:
-        """The weight of each zone, (m, 5), and of all, given overflow and first rack."""
+    def _read(self, likelihood: np.ndarray) -> tuple[np.ndarray, float]:
+        """The weight of each zone, (m, 5), and of all, given overflow and first rack.
+
+        Args:
+            likelihood: The logarithm of that of what was done with each dish, by its zone, (n, 5).
+        """
         zones, total = np.zeros_like(self.zones), 0.0
         for by_hand, prior in zip(self._dishes.by_hand, HAND.values(), strict=True):
-            shown = by_hand[: self._shown]
-            if not allowed[shown, SINK_ZONE].all() or not allowed[~shown, :SINK_ZONE].any(1).all():
-                continue
-            of_hand, weight = self._read_given_hand(allowed[:, :SINK_ZONE], by_hand)
-            zones += prior * of_hand
-            total += prior * weight
+            of_hand = prior * np.exp(likelihood[by_hand[: self._shown], SINK_ZONE].sum())
+            if of_hand > IMPOSSIBLE:
+                given_hand, weight = self._read_given_hand(likelihood[:, :SINK_ZONE], by_hand)
+                zones += of_hand * given_hand
+                total += of_hand * weight
         return zones, total
 
     def _read_given_hand(
-        self, allowed: np.ndarray, by_hand: np.ndarray
+        self, likelihood: np.ndarray, by_hand: np.ndarray
     ) -> tuple[np.ndarray, float]:
         shown = self._shown
-        exceptions = self._exceptions(allowed, by_hand)
+        exceptions = self._exceptions(likelihood, by_hand)
         base = ~(exceptions.first | exceptions.second | by_hand)  # (K, N)
         zones, weight = np.zeros_like(self.zones), np.zeros(len(base))
         for scheme, prior in SCHEME.items():
             classes = self._dishes.classes[scheme]
-            free = _free_zones(allowed, base[:, :shown], classes[:shown], len(CLASSES[scheme]))
-            distinct, which = np.unique(free, axis=0, return_inverse=True)
-            counts, marginals = _count_bases(distinct)  # (D,), (D, C, 4)
-            own = prior * exceptions.weight * counts[which]  # (K,)
-            weight += own
-            routed = np.zeros((len(distinct), base.shape[1] - shown))  # (D, m)
-            np.add.at(routed, which, own[:, None] * base[:, shown:])
-            zones[:, :SINK_ZONE] += np.einsum("dm,dmz->mz", routed, marginals[:, classes[shown:]])
+            of_class = np.eye(len(CLASSES[scheme]))[classes]  # (N, C)
+            told = np.einsum("nc,nz->ncz", of_class[:shown], likelihood)  # (n, C, 4)
+            shares, marginals = sum_bases(np.exp(np.tensordot(base[:, :shown], told, axes=1)))
+            own = prior * exceptions.weight
+            weight += own * shares
+            routed = own[:, None, None] * marginals  # (K, C, 4)
+            of_base = np.einsum("km,kcz->mcz", base[:, shown:].astype(float), routed)
+            zones[:, :SINK_ZONE] += of_base[np.arange(len(zones)), classes[shown:]]
         first, second = exceptions.first[:, shown:], exceptions.second[:, shown:]
         zones[:, :SINK_ZONE] += (weight[:, None] * first).T @ exceptions.first_zone
         zones[:, :SINK_ZONE] += (weight[:, None] * second).T @ exceptions.second_zone
         zones[by_hand[shown:], SINK_ZONE] += weight.sum()
         return zones, float(weight.sum())
 
-    def _exceptions(self, allowed: np.ndarray, by_hand: np.ndarray) -> _Exceptions:
-        shown = self._shown
+    def _exceptions(self, likelihood: np.ndarray, by_hand: np.ndarray) -> _Exceptions:
         masks, prior = self._dishes.exceptions  # (G, N), (G,)
         own = masks & ~by_hand
-        wrong = (~allowed & ~by_hand[:shown, None]).astype(float)  # (n, 4)
-        of_shown = own[:, :shown].astype(float)
-        one = of_shown @ wrong == 0  # (G, 4): the zones that explain all dishes of an exception
-        both = np.einsum("gn,hn,nz->ghz", of_shown, of_shown, wrong)
-        two = (of_shown @ wrong)[None] - both < 0.5  # (G, G, 4): those of a second one
-        share_one, share_two = one.mean(axis=1), two.mean(axis=2)
-        single = np.flatnonzero(share_one)
-        g, h = np.nonzero(share_one[:, None] * share_two)
+        of_shown = own[:, : self._shown].astype(float)  # (G, n)
+        one = of_shown @ likelihood  # (G, 4)
+        both = np.einsum("gn,hn,nz->ghz", of_shown, of_shown, likelihood)
+        one, two = np.exp(one), np.exp(one[None] - both)  # (G, 4), (G, G, 4): of a second one
+        single = EXCEPTIONS[1] * prior * one.mean(axis=1)  # (G,)
+        pair = EXCEPTIONS[2] * np.outer(prior * one.mean(axis=1), prior) * two.mean(axis=2)
+        heaviest = max(EXCEPTIONS[0], single.max(), pair.max())
+        (s,) = np.nonzero(single > NEGLIGIBLE * heaviest)
+        g, h = np.nonzero(pair > NEGLIGIBLE * heaviest)
         none = np.zeros((1, own.shape[1]), dtype=bool)
-        nowhere = np.zeros((1 + len(single), len(ZONES)))
-        weight = [
-            np.array([EXCEPTIONS[0]]),
-            EXCEPTIONS[1] * prior[single] * share_one[single],
-            EXCEPTIONS[2] * prior[g] * prior[h] * share_one[g] * share_two[g, h],
-        ]
+        nowhere = np.zeros((1 + len(s), len(ZONES)))
         return _Exceptions(
-            weight=np.concatenate(weight),
-            first=np.concatenate([none, own[single], own[g]]),
-            second=np.concatenate([none.repeat(1 + len(single), axis=0), own[h] & ~own[g]]),
-            first_zone=np.concatenate([nowhere[:1], _shares(one[single]), _shares(one[g])]),
+            weight=np.concatenate([[EXCEPTIONS[0]], single[s], pair[g, h]]),
+            first=np.concatenate([none, own[s], own[g]]),
+            second=np.concatenate([none.repeat(1 + len(s), axis=0), own[h] & ~own[g]]),
+            first_zone=np.concatenate([nowhere[:1], _shares(one[s]), _shares(one[g])]),
             second_zone=np.concatenate([nowhere, _shares(two[g, h])]),
         )
 
@@ -251,42 +253,35 @@ class _Described:
         )
 
 
-def _free_zones(
-    allowed: np.ndarray, base: np.ndarray, classes: np.ndarray, count: int
-) -> np.ndarray:
-    """The zones that each class may have, as bits, (K, C) int.
+def _log_likelihood(allowed: np.ndarray, slips: float) -> np.ndarray:
+    """The logarithm of the likelihood of what was done with each dish, by its zone, (n, 5)."""
+    likely = allowed.astype(float)
+    zones = likely[:, :SINK_ZONE]
+    elsewhere = zones.sum(axis=1, keepdims=True)
+    slipped = np.hstack([(elsewhere - zones) / (len(ZONES) - 1), elsewhere / len(ZONES)])
+    return np.log(np.maximum((1 - slips) * likely + slips * slipped, IMPOSSIBLE))
+
+
+def sum_bases(likelihood: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Sum over the bases of a scheme, all of which are equally frequent.
 
     Args:
-        allowed: The zones of each dish, (n, 4) bool.
-        base: The dishes that go where their class goes, (K, n) bool.
-        classes: The class of each dish, (n,) int.
-        count: C, how many classes there are.
-    """
-    bits = allowed @ (1 << np.arange(len(ZONES)))  # (n,)
-    told = np.where(base, bits, SETS[-1])  # (K, n)
-    of_class = (told[:, classes == c] for c in range(count))
-    together = [np.bitwise_and.reduce(own, axis=1, initial=SETS[-1]) for own in of_class]
-    return np.stack(together, axis=1)
-
-
-def _count_bases(free: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """How many of the bases of a scheme are possible, and with which zone of each class.
-
-    Args:
-        free: The zones that each class may have, as bits, (D, C) int.
+        likelihood: Of what was done with the dishes of a class, by the zone of the class,
+            (K, C, 4).
 
     Returns:
-        The share of possible bases, (D,), and the probability of each zone of each class,
-        (D, C, 4), 0 where no base is possible.
+        The mean likelihood of the bases, (K,), and the part of it in which a class has a zone,
+        (K, C, 4).
     """
-    signs, every = _inclusion_exclusion(free.shape[1])  # (16,)
-    sizes = SIZE[free]  # (D, C, 16)
-    counts = sizes.prod(axis=1) @ signs  # (D,)
-    marginals = np.zeros((*free.shape, len(ZONES)))
-    for c in range(free.shape[1]):
-        others = np.delete(sizes, c, axis=1).prod(axis=1) * signs  # (D, 16)
-        marginals[:, c] = (others @ HAS) * HAS[free[:, c]]
-    return counts / every, marginals / np.maximum(counts, 1)[:, None, None]
+    signs, count = _inclusion_exclusion(likelihood.shape[1])  # (16,)
+    inside = likelihood @ HAS.T  # (K, C, 16): summed over the zones of each set
+    before = np.ones_like(inside)
+    before[:, 1:] = np.cumprod(inside[:, :-1], axis=1)
+    after = np.ones_like(inside)
+    after[:, :-1] = np.cumprod(inside[:, :0:-1], axis=1)[:, ::-1]
+    others = before * after * signs / count  # (K, C, 16): the product over all other classes
+    marginals = (others @ HAS) * likelihood
+    return marginals[:, 0].sum(axis=1), marginals
 
 
 @cache
@@ -300,7 +295,7 @@ def _inclusion_exclusion(classes: int) -> tuple[np.ndarray, float]:
             for inside in SETS:
                 if inside & ~used == 0:
                     signs[inside] += (-1) ** (used.bit_count() - inside.bit_count())
-    return signs, float(signs @ SIZE[-1].astype(float) ** classes)
+    return signs, float(signs @ HAS.sum(axis=1).astype(float) ** classes)
 
 
 @cache
@@ -309,6 +304,6 @@ def every_ranking(classes: int) -> np.ndarray:
     return np.array(list(permutations(range(classes))))
 
 
-def _shares(zones: np.ndarray) -> np.ndarray:
-    """Sets of zones, (K, 4) bool, as probabilities, (K, 4)."""
-    return zones / np.maximum(zones.sum(axis=1, keepdims=True), 1)
+def _shares(likelihood: np.ndarray) -> np.ndarray:
+    """Likelihoods of zones, (K, 4), as probabilities, (K, 4)."""
+    return likelihood / np.maximum(likelihood.sum(axis=1, keepdims=True), IMPOSSIBLE)

@@ -204,7 +204,8 @@ def _shown(
         return UserDemonstration(dishes, plan)
     slipped = generator.random(len(plan.zones)) < slips
     elsewhere = (plan.zones + generator.integers(1, len(ZONES), len(plan.zones))) % len(ZONES)
-    elsewhere = np.where(plan.zones == SINK_ZONE, elsewhere % len(ZONES), elsewhere)
+    anywhere = generator.integers(len(ZONES), size=len(plan.zones))
+    elsewhere = np.where(plan.zones == SINK_ZONE, anywhere, elsewhere)
     return UserDemonstration(dishes, replace(plan, zones=np.where(slipped, elsewhere, plan.zones)))
 
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from kitchen_prefs import instances
 from kitchen_prefs.envs.environment import DishwasherLoading
-from kitchen_prefs.envs.episode_simulator import LIMIT_FACTOR
+from kitchen_prefs.envs.simulator import LIMIT_FACTOR
 from kitchen_prefs.metrics import packing_efficiency
 from kitchen_prefs.simulation.sessions import expert_trajectory
 

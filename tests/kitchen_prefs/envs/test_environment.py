@@ -11,7 +11,7 @@ from stable_baselines3.common.env_checker import check_env as check_stable_basel
 
 from kitchen_prefs import instances
 from kitchen_prefs.envs.environment import MAX_EPISODE_STEPS, TASK, DishwasherLoading
-from kitchen_prefs.envs.episode_simulator import LIMIT_FACTOR
+from kitchen_prefs.envs.simulator import LIMIT_FACTOR
 from kitchen_prefs.metrics import edit_similarity, packing_efficiency
 from kitchen_prefs.simulation import layout
 from kitchen_prefs.simulation.kitchen import BOTTOM_RACK, DOOR, FIRST_DISH, TOP_RACK

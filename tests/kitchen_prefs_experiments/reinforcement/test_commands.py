@@ -16,7 +16,7 @@ from typer.testing import CliRunner
 from kitchen_prefs import instances
 from kitchen_prefs.cli import command_line
 from kitchen_prefs.envs.demonstrations import demonstrate
-from kitchen_prefs.envs.episode_simulator import LIMIT_FACTOR
+from kitchen_prefs.envs.simulator import LIMIT_FACTOR
 from kitchen_prefs.evaluation.checkpoint_reading import read_config, read_policy
 from kitchen_prefs.evaluation.episode_files import read_episodes
 from kitchen_prefs.instances import CAPACITY, POSE

@@ -1,0 +1,133 @@
+"""One session of the second tier simulated decision by decision, with the facts of its metrics."""
+
+from collections import Counter
+from dataclasses import dataclass
+
+import numpy as np
+
+from kitchen_prefs.envs.people_observations import DescribedObserver
+from kitchen_prefs.envs.simulator import Simulator
+from kitchen_prefs.metrics.people_episode import PeopleEpisode
+from kitchen_prefs.people.attributes import DescribedDishes
+from kitchen_prefs.people.expert import PlanExpert
+from kitchen_prefs.people.sessions import PeopleSession, people_table
+from kitchen_prefs.people.zones import IS_IN_RACK, SINK_ZONE, zone_of_placements
+from kitchen_prefs.preferences import RACKS
+from kitchen_prefs.simulation.kitchen import FIRST_DISH, IN_RACK, SINK, Kitchen, Location
+
+LEFT = SINK_ZONE + 1  # where a dish is that was not put away
+
+
+@dataclass(frozen=True)
+class _Before:
+    """What is known before a decision: the dishes whose turn it is, and the place by style."""
+
+    turn: frozenset[int] | None
+    styled: int | None
+
+
+class PeopleSimulator(Simulator):
+    """A session of the second tier from its start to where it is now.
+
+    Args:
+        session: What is simulated.
+
+    Attributes:
+        session: What is simulated.
+        expert: Loads the kitchen as the user would, from where it is.
+    """
+
+    def __init__(self, session: PeopleSession) -> None:
+        kitchen = Kitchen(session.dishes, people_table())
+        observer = DescribedObserver(kitchen, session.generator("order"))
+        super().__init__(kitchen, observer, len(session.expert.trajectory.decisions))
+        self.session = session
+        self.expert = PlanExpert(kitchen, session.expert.plan)
+        self._right_turns = self._turns = 0
+        self._right_style = self._styled = 0
+
+    def expert_instance(self) -> int:
+        """The instance that the expert would choose now."""
+        return self.expert.choose()
+
+    def episode(self) -> PeopleEpisode:
+        """The facts of the episode so far, from which every metric is computed."""
+        session, kitchen = self.session, self.kitchen
+        mine, theirs = ends(kitchen), ends(session.expert.trajectory.kitchen)
+        by_hand = session.expert.plan.zones == SINK_ZONE
+        in_rack = np.isin(kitchen.location, list(IN_RACK.values()))
+        return PeopleEpisode(
+            split=session.split,
+            session=session.index,
+            salt=session.salt,
+            dishes=len(kitchen.location),
+            alike=(mine & theirs).total(),
+            turns=(self._right_turns, self._turns),
+            styled=(self._right_style, self._styled),
+            by_hand_loaded=int((by_hand & in_rack).sum()),
+            decisions=tuple(self.decisions),
+            refused=tuple(self.refused),
+            expert_decisions=len(session.expert.trajectory.decisions),
+            closed=kitchen.closed,
+            finished=kitchen.finished,
+            actions=tuple(self.actions),
+        )
+
+    def _before(self, instance: int) -> _Before:
+        if self.kitchen.held is None:
+            return _Before(self._dishes_in_turn(), None)
+        place = self.expert.where_to_put()
+        return _Before(None, None if place == SINK else place)
+
+    def _count(self, instance: int, before: _Before) -> None:
+        if before.turn is not None:
+            self._turns += 1
+            self._right_turns += instance - FIRST_DISH in before.turn
+        if before.styled is not None and self._is_in_its_zone(instance, before.styled):
+            self._styled += 1
+            self._right_style += instance == before.styled
+
+    def _dishes_in_turn(self) -> frozenset[int] | None:
+        """The dishes of the lowest rank that could be taken for the rack that is out.
+
+        None if no rack is out, the user has no order, or the dishes of one rank wait.
+        """
+        rack = self.kitchen.open_rack
+        if rack is None or self.session.user.order is None:
+            return None
+        waiting = self.kitchen.counter
+        mine = waiting[IS_IN_RACK[rack][self.expert.targets(waiting)]]
+        ranks = self.session.expert.plan.ranks[mine]
+        if len(set(ranks.tolist())) < 2:
+            return None
+        return frozenset(mine[ranks == ranks.min()].tolist())
+
+    def _is_in_its_zone(self, instance: int, place: int) -> bool:
+        """Whether a chosen place lies in the zone of the right one."""
+        if instance == SINK or instance // 1000 != place // 1000:
+            return False
+        rack = self.kitchen.open_rack
+        assert rack is not None
+        zone = zone_of_placements(self.kitchen.table)[rack]
+        return bool(zone[instance % 1000] == zone[place % 1000])
+
+
+def ends(kitchen: Kitchen) -> Counter[tuple]:
+    """How many dishes of each kind are in each zone, in the sink, or left."""
+    dishes = kitchen.dishes
+    assert isinstance(dishes, DescribedDishes)
+    kinds = zip(
+        dishes.category.tolist(),
+        dishes.material.tolist(),
+        dishes.colour.tolist(),
+        dishes.greasy.tolist(),
+        strict=True,
+    )
+    return Counter((*kind, _end(kitchen, dish)) for dish, kind in enumerate(kinds))
+
+
+def _end(kitchen: Kitchen, dish: int) -> int:
+    for rack in RACKS:
+        if kitchen.location[dish] == IN_RACK[rack]:
+            return int(zone_of_placements(kitchen.table)[rack][kitchen.placement[dish]])
+    return SINK_ZONE if kitchen.location[dish] == Location.SINK else LEFT
