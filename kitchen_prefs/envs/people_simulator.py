@@ -9,13 +9,10 @@ from kitchen_prefs.envs.people_observations import DescribedObserver
 from kitchen_prefs.envs.simulator import Simulator
 from kitchen_prefs.metrics.people_episode import PeopleEpisode
 from kitchen_prefs.people.attributes import DescribedDishes
-from kitchen_prefs.people.expert import PlanExpert
+from kitchen_prefs.people.expert import PlanExpert, ends_of
 from kitchen_prefs.people.sessions import PeopleSession, people_table
 from kitchen_prefs.people.zones import IS_IN_RACK, SINK_ZONE, zone_of_placements
-from kitchen_prefs.preferences import RACKS
-from kitchen_prefs.simulation.kitchen import FIRST_DISH, IN_RACK, SINK, Kitchen, Location
-
-LEFT = SINK_ZONE + 1  # where a dish is that was not put away
+from kitchen_prefs.simulation.kitchen import FIRST_DISH, IN_RACK, SINK, Kitchen
 
 
 @dataclass(frozen=True)
@@ -116,18 +113,5 @@ def ends(kitchen: Kitchen) -> Counter[tuple]:
     """How many dishes of each kind are in each zone, in the sink, or left."""
     dishes = kitchen.dishes
     assert isinstance(dishes, DescribedDishes)
-    kinds = zip(
-        dishes.category.tolist(),
-        dishes.material.tolist(),
-        dishes.colour.tolist(),
-        dishes.greasy.tolist(),
-        strict=True,
-    )
-    return Counter((*kind, _end(kitchen, dish)) for dish, kind in enumerate(kinds))
-
-
-def _end(kitchen: Kitchen, dish: int) -> int:
-    for rack in RACKS:
-        if kitchen.location[dish] == IN_RACK[rack]:
-            return int(zone_of_placements(kitchen.table)[rack][kitchen.placement[dish]])
-    return SINK_ZONE if kitchen.location[dish] == Location.SINK else LEFT
+    attributes = (dishes.category, dishes.material, dishes.colour, dishes.greasy, ends_of(kitchen))
+    return Counter(zip(*(values.tolist() for values in attributes), strict=True))

@@ -3,14 +3,14 @@
 A certified prompt makes the exact reader of the grammar sure, so the ceiling of a split is known.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from kitchen_prefs.people.attributes import DescribedDishes
+from kitchen_prefs.people.expert import ends_of, roll_out_plan
 from kitchen_prefs.people.posterior import Posterior
-from kitchen_prefs.people.zones import IS_IN_RACK
-from kitchen_prefs.preferences import RACKS
+from kitchen_prefs.simulation.kitchen import Kitchen, PlacementTable
 
 SURE = 0.97
 
@@ -20,33 +20,52 @@ class Certificate:
     """How sure the reader is of what a user does with some dishes.
 
     Attributes:
-        zones: The probability of the most probable zone, its mean over the dishes.
+        destinations: The probability that a dish ends where the most probable user puts it: that of
+            its zone, and of an overflow with which it ends there; its mean over the dishes.
         ranks: The probability of the most probable order of two dishes (one, the other, or equal),
-            its mean over the pairs of one rack; 1 where there is none.
+            its mean over all pairs.
     """
 
-    zones: float
+    destinations: float
     ranks: float
 
     @property
     def holds(self) -> bool:
         """Whether the reader is sure of both."""
-        return self.zones >= SURE and self.ranks >= SURE
+        return self.destinations >= SURE and self.ranks >= SURE
 
 
-def certificate(posterior: Posterior, dishes: DescribedDishes) -> Certificate:
-    """Certify what is known of a user for some dishes."""
-    zones = posterior.zones(dishes)  # (m, 5)
-    sure_of_zones = float(zones.max(axis=1).mean())
-    if sure_of_zones < SURE:
-        return Certificate(sure_of_zones, 0.0)  # the order is not needed any more
+def certificate(
+    posterior: Posterior, dishes: DescribedDishes, table: PlacementTable
+) -> Certificate:
+    """Certify what is known of a user for some dishes, which can stand at a table's placements.
+
+    Where one of the two is not sure, the dearer one is not computed and 0.
+    """
     earlier = posterior.earlier(dishes)  # (m, m)
     relation = np.stack([earlier, earlier.T, 1 - earlier - earlier.T]).max(axis=0)
-    pairs = ~np.eye(len(zones), dtype=bool) & _of_one_rack(zones.argmax(axis=1))
-    return Certificate(sure_of_zones, float(relation[pairs].mean()) if pairs.any() else 1.0)
+    ranks = float(relation[~np.eye(len(relation), dtype=bool)].mean())
+    if ranks < SURE:
+        return Certificate(0.0, ranks)
+    zones = posterior.zones(dishes).max(axis=1)  # (m,)
+    if zones.mean() < SURE:
+        return Certificate(float(zones.mean()), ranks)
+    return Certificate(float((zones * _sure_of_overflow(posterior, dishes, table)).mean()), ranks)
 
 
-def _of_one_rack(zones: np.ndarray) -> np.ndarray:
-    """Whether two dishes go to one rack, (m, m) bool."""
-    racks = np.stack([IS_IN_RACK[rack][zones] for rack in RACKS])  # (2, m)
-    return (racks[:, :, None] & racks[:, None, :]).any(axis=0)
+def _sure_of_overflow(
+    posterior: Posterior, dishes: DescribedDishes, table: PlacementTable
+) -> np.ndarray:
+    """How probable the overflows are with which each dish ends in the same zone, (m,)."""
+    guess = posterior.guess(dishes)
+
+    def ends(overflow: str) -> np.ndarray:
+        plan = replace(guess, overflow=overflow)
+        return ends_of(roll_out_plan(Kitchen(dishes, table), plan).kitchen)
+
+    most_probable = ends(guess.overflow)
+    same = np.zeros(len(most_probable))
+    for overflow, probability in posterior.overflows(dishes).items():
+        if probability > 1 - SURE:
+            same += probability * (ends(overflow) == most_probable)
+    return same

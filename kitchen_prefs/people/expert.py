@@ -14,7 +14,9 @@ from kitchen_prefs.people.attributes import FAMILY_OF
 from kitchen_prefs.people.users import LoadingPlan
 from kitchen_prefs.people.zones import (
     IS_IN_RACK,
+    LEFT,
     OVERFLOW_INDEX,
+    SINK_ZONE,
     targets_now,
     zone_of_placements,
 )
@@ -28,6 +30,7 @@ from kitchen_prefs.simulation.kitchen import (
     RACK_INSTANCE,
     SINK,
     Kitchen,
+    Location,
     PlacementTable,
     decision_kind,
     rack_position,
@@ -119,6 +122,16 @@ def corner_distances(table: PlacementTable, rack: str, corner: str) -> np.ndarra
     sign_x, sign_y = CORNERS[corner]
     place = (x + sign_x * layout.RACK_INNER[0] / 2, y + sign_y * layout.RACK_INNER[1] / 2)
     return np.hypot(*(table.pose[rack][:, :2] - place).T)
+
+
+def ends_of(kitchen: Kitchen) -> np.ndarray:
+    """The zone in which each dish is, SINK_ZONE for the sink, LEFT for one not put away, (n,)."""
+    zones = np.full(len(kitchen.location), LEFT)
+    zones[kitchen.location == Location.SINK] = SINK_ZONE
+    for rack, zone in zone_of_placements(kitchen.table).items():
+        own = kitchen.location == IN_RACK[rack]
+        zones[own] = zone[kitchen.placement[own]]
+    return zones
 
 
 def roll_out_plan(kitchen: Kitchen, plan: LoadingPlan) -> ExpertTrajectory:

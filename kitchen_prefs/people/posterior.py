@@ -34,6 +34,7 @@ from kitchen_prefs.preferences import RACKS
 SETS = range(2 ** len(ZONES))  # sets of zones as bits
 HAS = np.array([[bool(one >> zone & 1) for zone in range(len(ZONES))] for one in SETS])  # (16, 4)
 IMPOSSIBLE = 1e-200  # its logarithm stands for that of 0
+NOT_EXPLAINED = np.log(IMPOSSIBLE) / 2  # by any zone, if the logarithm is lower
 NEGLIGIBLE = 1e-9  # hypotheses that weigh less than this share of the heaviest are left out
 
 
@@ -69,11 +70,12 @@ class Posterior:
     def __init__(self, evidence: Sequence[Evidence], slips: float = 0.0) -> None:
         self.evidence = joined([NOTHING, *evidence])
         self.slips = slips
+        self._last: tuple[DescribedDishes, _ZoneReading] | None = None
 
     def zones(self, dishes: DescribedDishes) -> np.ndarray:
         """How probable each zone is for each dish, the last washed by hand, (m, 5)."""
-        reading = _ZoneReading(self.evidence, self.slips, dishes)
-        return reading.zones / reading.zones.sum(axis=1, keepdims=True)
+        weights = self._reading(dishes).zones
+        return weights / weights.sum(axis=1, keepdims=True)
 
     def earlier(self, dishes: DescribedDishes) -> np.ndarray:
         """How probable it is that the rank of one dish is lower than another's, (m, m)."""
@@ -95,9 +97,14 @@ class Posterior:
             weights[scheme] = (1 - NO_ORDER) * prior * share
         return weights
 
+    def overflows(self, dishes: DescribedDishes) -> dict[str, float]:
+        """How probable each overflow is."""
+        weights = self._reading(dishes).overflow
+        return dict(zip(OVERFLOWS, (weights / weights.sum()).tolist(), strict=True))
+
     def guess(self, dishes: DescribedDishes) -> LoadingPlan:
         """How the user would most probably load some dishes."""
-        reading = _ZoneReading(self.evidence, self.slips, dishes)
+        reading = self._reading(dishes)
         return LoadingPlan(
             zones=reading.zones.argmax(axis=1),
             ranks=self._most_probable_ranks(dishes),
@@ -105,6 +112,12 @@ class Posterior:
             overflow=list(OVERFLOWS)[int(reading.overflow.argmax())],
             style=STYLES[int(self.evidence.styles.argmax())],
         )
+
+    def _reading(self, dishes: DescribedDishes) -> "_ZoneReading":
+        """What is read of the zones of some dishes; the last one is kept."""
+        if self._last is None or self._last[0] is not dishes:
+            self._last = (dishes, _ZoneReading(self.evidence, self.slips, dishes))
+        return self._last[1]
 
     def _most_probable_ranks(self, dishes: DescribedDishes) -> np.ndarray:
         scheme = max(self.orders, key=lambda name: self.orders[name])
@@ -163,6 +176,8 @@ class _ZoneReading:
             likelihood: The logarithm of that of what was done with each dish, by its zone, (n, 5).
         """
         zones, total = np.zeros_like(self.zones), 0.0
+        if (likelihood.max(axis=1) < NOT_EXPLAINED).any():
+            return zones, total
         for by_hand, prior in zip(self._dishes.by_hand, HAND.values(), strict=True):
             of_hand = prior * np.exp(likelihood[by_hand[: self._shown], SINK_ZONE].sum())
             if of_hand > IMPOSSIBLE:

@@ -210,7 +210,8 @@ def _shown(
 
 
 def _certified(prompts: Sequence[UserDemonstration], dishes: DescribedDishes) -> bool:
-    return certificate(Posterior([prompt.evidence for prompt in prompts]), dishes).holds
+    posterior = Posterior([prompt.evidence for prompt in prompts])
+    return certificate(posterior, dishes, people_table()).holds
 
 
 def _generator(split: str, salt: int, index: int, purpose: str) -> np.random.Generator:

@@ -16,11 +16,12 @@ import numpy as np
 
 from kitchen_prefs.people.attributes import CLASSES, DescribedDishes
 from kitchen_prefs.people.evidence import Evidence, joined_dishes
+from kitchen_prefs.people.expert import ends_of
 from kitchen_prefs.people.posterior import Posterior
 from kitchen_prefs.people.users import LoadingPlan
-from kitchen_prefs.people.zones import RACK_OF_ZONE, SINK_ZONE, ZONES, zone_of_placements
+from kitchen_prefs.people.zones import RACK_OF_ZONE, SINK_ZONE
 from kitchen_prefs.preferences import CATEGORIES, RACKS
-from kitchen_prefs.simulation.kitchen import FIRST_DISH, IN_RACK, Kitchen
+from kitchen_prefs.simulation.kitchen import FIRST_DISH, Kitchen
 
 # How much two dishes are alike that have the same category, material, and so on: what most rules
 # of the grammar speak of weighs most.
@@ -38,6 +39,7 @@ class Shown:
         times: When each was picked in its demonstration, from 0 to 1, (n,) float.
         first: The rack that was loaded first, most often.
         evidence: What each demonstration says to who knows the grammar.
+        slips: The share of dishes that users of the split put elsewhere by mistake.
     """
 
     dishes: DescribedDishes
@@ -45,18 +47,17 @@ class Shown:
     times: np.ndarray
     first: str
     evidence: tuple[Evidence, ...]
+    slips: float
 
 
 Yardstick = Callable[[Shown, DescribedDishes], LoadingPlan]
 
 
-def shown_in(
-    loads: Sequence[tuple[Kitchen, Sequence[int], Evidence]],
-) -> Shown:
+def shown_in(loads: Sequence[tuple[Kitchen, Sequence[int], Evidence]], slips: float = 0.0) -> Shown:
     """What readers see of demonstrations: finished kitchens, their decisions and their evidence."""
     zones, times, firsts = [], [], []
     for kitchen, decisions, _ in loads:
-        zones.append(_zones_at_the_end(kitchen))
+        zones.append(np.minimum(ends_of(kitchen), SINK_ZONE))
         times.append([_time_of(dish, decisions) for dish in range(len(kitchen.location))])
         racks = [rack for rack in (_rack_of_toggle(one) for one in decisions) if rack]
         firsts.append(racks[0] if racks else RACKS[0])
@@ -68,6 +69,7 @@ def shown_in(
         np.concatenate(times),
         Counter(firsts).most_common(1)[0][0],
         tuple(evidence for *_, evidence in loads),
+        slips,
     )
 
 
@@ -112,7 +114,7 @@ def by_tree(shown: Shown, dishes: DescribedDishes) -> LoadingPlan:
 
 def bayes(shown: Shown, dishes: DescribedDishes) -> LoadingPlan:
     """What the exact reader of the grammar thinks most probable."""
-    return Posterior(shown.evidence).guess(dishes)
+    return Posterior(shown.evidence, shown.slips).guess(dishes)
 
 
 YARDSTICKS: dict[str, Yardstick] = {
@@ -152,14 +154,6 @@ def _features(dishes: DescribedDishes) -> np.ndarray:
     return np.hstack([*columns, dishes.greasy[:, None], dishes.extents]).astype(float)
 
 
-def _zones_at_the_end(kitchen: Kitchen) -> np.ndarray:
-    zones = np.full(len(kitchen.location), SINK_ZONE)
-    for rack in RACKS:
-        own = kitchen.location == IN_RACK[rack]
-        zones[own] = zone_of_placements(kitchen.table)[rack][kitchen.placement[own]]
-    return zones
-
-
 def _time_of(dish: int, decisions: Sequence[int]) -> float:
     picked = FIRST_DISH + dish
     return decisions.index(picked) / len(decisions) if picked in decisions else 1.0
@@ -167,6 +161,3 @@ def _time_of(dish: int, decisions: Sequence[int]) -> float:
 
 def _rack_of_toggle(instance: int) -> str | None:
     return {1: "bottom", 2: "top"}.get(instance)
-
-
-assert len(ZONES) == SINK_ZONE

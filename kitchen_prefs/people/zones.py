@@ -11,6 +11,7 @@ from kitchen_prefs.simulation.kitchen import Kitchen, PlacementTable, rack_posit
 ZONES = ("top left", "top right", "bottom left", "bottom right")
 RACK_OF_ZONE = ("top", "top", "bottom", "bottom")
 SINK_ZONE = len(ZONES)  # washed by hand, or nothing is free
+LEFT = SINK_ZONE + 1  # where a dish is that was not put away
 
 # What happens when a zone is full: for each zone those that are tried, its own first.
 OVERFLOWS = {

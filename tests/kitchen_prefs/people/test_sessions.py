@@ -5,7 +5,7 @@ import pytest
 
 from kitchen_prefs.people.certificates import certificate
 from kitchen_prefs.people.posterior import Posterior
-from kitchen_prefs.people.sessions import make_people_session
+from kitchen_prefs.people.sessions import make_people_session, people_table
 from kitchen_prefs.people.splits import COUNTS, PEOPLE_SPLITS, SLIPS
 from kitchen_prefs.people.user_sampling import COMPOSED, pairs_of
 from kitchen_prefs.preferences import CATEGORIES
@@ -28,7 +28,7 @@ def test_a_session_is_what_its_split_says(name):
         if split.certified:
             own = session.prompts[session.evening :][:1] if split.evening else session.prompts
             evidence = [prompt.evidence for prompt in own]
-            assert certificate(Posterior(evidence), session.dishes).holds
+            assert certificate(Posterior(evidence), session.dishes, people_table()).holds
 
 
 def test_a_session_is_the_same_in_every_process():
