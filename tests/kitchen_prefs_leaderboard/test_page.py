@@ -128,7 +128,7 @@ def page(browser, file):
 
 def names(page, track="privileged", block="replayed only"):
     """The names in a block of a track's table that are not hidden."""
-    rows = page.locator(f'[data-track="{track}"] tbody[data-block="{block}"] tr:visible summary')
+    rows = page.locator(f'[data-track="{track}"] tbody[data-block="{block}"] tr:visible .more')
     return rows.all_text_contents()
 
 
@@ -150,10 +150,17 @@ def test_ranked_rows_come_first_and_the_others_have_no_rank(page):
 
 
 def test_a_row_tells_which_code_a_policy_from_elsewhere_has(page):
-    of_row = page.locator("tr details", has_text=HTML_NAME)
-    told = page.locator("tr details dt", has_text="Plug-in").locator("+ dd").all_text_contents()
+    plugin = page.locator("tr dt", has_text="Plug-in")
+    assert not plugin.is_visible()
+    more = page.locator(".more", has_text=HTML_NAME)
+    more.click()
+    assert more.get_attribute("aria-expanded") == "true"
+    assert plugin.is_visible()
+    told = plugin.locator("+ dd").all_text_contents()
     assert told == [f"lerobot_policy_elsewhere 1.2, code {'c' * 64}"]
-    assert of_row.locator("dt", has_text="Plug-in").count() == 1
+    page.locator('[data-track="open"] th button', has_text="Score").click()  # sorts
+    row = page.locator("tr", has=more)
+    assert row.locator("+ tr").locator("dt", has_text="Plug-in").count() == 1
 
 
 def test_a_tie_shows(tables, tmp_path, browser):
@@ -328,8 +335,8 @@ def test_a_failure_mode_opens_its_episodes(page, entries):
 
 def test_a_phone_scrolls_tables_and_not_the_page(page):
     page.set_viewport_size(PHONE)
-    for summary in page.locator("summary").all():
-        summary.click()
+    for more in page.locator(".more").all():
+        more.click()
     assert page.evaluate("document.documentElement.scrollWidth") <= PHONE["width"]
     boxes = page.locator(".scroll").evaluate_all(
         "all => all.map(box => box.scrollWidth > box.clientWidth)"

@@ -66,20 +66,26 @@ function about(entry) {
   );
 }
 
-function rerunText({ same, replayed, rerun, fresh, salt, by, runs, alone, sandbox }) {
+const ALIKE = 0.95; // kitchen_prefs_leaderboard/judgement.py
+
+function rerunText({ same, itself, replayed, rerun, fresh, salt, by, runs, alone, sandbox }) {
   const fresher = `fresh sessions (seed ${salt})`;
   const scores = [["replayed", replayed], ["re-run", rerun], [fresher, fresh]];
   const parts = scores.map(([name, { mean, low, high }]) =>
     `${name} ${fixed(mean)} (${fixed(low)} to ${fixed(high)})`);
   const percent = (share) => `${Math.round(100 * share)} %`;
+  const stochastic = itself !== null && itself < ALIKE;
   const facts = [
-    `${percent(same)} of the episodes have the same decisions`,
+    stochastic
+      ? `It does not repeat itself: ${percent(itself)} of the episodes of two runs are alike`
+      : `${percent(same)} of the episodes have the same decisions`,
     `Score: ${parts.join(", ")}`,
   ];
   if (alone !== null) {
     const where = sandbox ? "a confined process" : "a process";
     facts.push(`By ${by}, in ${where} of its own, ${runs === 1 ? "once" : `${runs} times`}`);
-    facts.push(`${percent(alone)} of the episodes that were rolled out alone went alike`);
+    facts.push(stochastic ? "The Score shown is that of the run with each session alone"
+      : `${percent(alone)} of the episodes that were rolled out alone went alike`);
   }
   return `${facts.join(". ")}.`;
 }
@@ -97,17 +103,27 @@ function rowOf(entry, columns) {
     },
   });
   box.checked = shown.has(index);
-  const details = html("details", {}, html("summary", {}, name), about(entry));
+  const more = html("button", {
+    type: "button",
+    class: "more",
+    "aria-expanded": "false",
+    click: () => {
+      row.about.hidden = !row.about.hidden;
+      more.setAttribute("aria-expanded", !row.about.hidden);
+    },
+  }, name);
   const row = html(
     "tr",
     {},
     html("td", { class: "tick" }, box),
     html("td", { class: "rank" }, rankOf(entry)),
-    html("th", { scope: "row", class: "name" }, details,
+    html("th", { scope: "row", class: "name" }, more,
       html("span", { class: "by" }, authors.join(", ")), badges(entry)),
     ...columns.map(({ values }) => numbers(values(entry))),
   );
   row.entry = entry;
+  row.about = html("tr", { hidden: "" }, html("td"),
+    html("td", { colspan: columns.length + 2 }, about(entry)));
   return row;
 }
 
@@ -139,7 +155,7 @@ function sortBy(table, header, { key }, down) {
       const order = one < other ? -1 : Number(one > other);
       return down ? -order : order;
     });
-    block.append(...rows);
+    block.append(...rows.flatMap((row) => [row, row.about]));
   }
 }
 
@@ -179,7 +195,7 @@ function trackTable(track, columns) {
 function block(title, remark, entries, columns) {
   const cell = html("th", { colspan: columns.length + 3, scope: "rowgroup" }, title, remark);
   return html("tbody", { "data-block": title }, html("tr", { class: "block" }, cell),
-    ...entries.map((entry) => rowOf(entry, columns)));
+    ...entries.map((entry) => rowOf(entry, columns)).flatMap((row) => [row, row.about]));
 }
 
 /** The Scores of floor and ceiling on each split. */
@@ -218,7 +234,11 @@ function filterTables() {
     let ofTrack = 0;
     for (const body of section.querySelectorAll("tbody")) {
       const rows = [...body.rows].filter((row) => row.entry);
-      for (const row of rows) row.hidden = !matches(row.entry, text);
+      for (const row of rows) {
+        row.hidden = !matches(row.entry, text);
+        const open = row.querySelector(".more").getAttribute("aria-expanded") === "true";
+        row.about.hidden = row.hidden || !open;
+      }
       const left = rows.filter((row) => !row.hidden).length;
       body.hidden = left === 0;
       ofTrack += left;
