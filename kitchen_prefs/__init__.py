@@ -14,3 +14,7 @@ gymnasium.register(
     "kitchen_prefs/DishwasherLoading-v0",
     entry_point="kitchen_prefs.envs.environment:DishwasherLoading",
 )
+gymnasium.register(
+    "kitchen_prefs/DishwasherPeople-v0",
+    entry_point="kitchen_prefs.envs.people_environment:DishwasherPeople",
+)

@@ -37,6 +37,7 @@ DESCRIBED_COLUMNS = 21
 
 # The largest place set: door, two racks, twenty dishes, 48 placements of a category and the sink.
 CAPACITY = 3 + 20 + 48 + 1
+DESCRIBED_CAPACITY = 3 + 24 + 48 + 1
 FLAT_SIZE = CAPACITY * COLUMNS
 
 CHOSEN = 13  # the prompt's last column
@@ -44,6 +45,9 @@ PROMPT_COLUMNS = 14
 # A prompt has at most 14 dishes, each picked among 17 rows and placed among 66, and at most 26
 # toggles among 17 rows, 6 to load what is there and 20 for what arrives later: 1604 rows.
 PROMPT_CAPACITY = 1664
+# In the second tier, at most 18 dishes, each picked among 21 rows and placed among 70, and some 18
+# toggles among 21 rows: 2016.
+PEOPLE_PROMPT_CAPACITY = 2048
 
 
 def pack(rows: np.ndarray, capacity: int = CAPACITY) -> np.ndarray:

@@ -15,7 +15,7 @@ from typing import Annotated
 
 from pydantic import AfterValidator, Field, StringConstraints, model_validator
 
-from kitchen_prefs.envs.environment import MAX_EPISODE_STEPS
+from kitchen_prefs.envs.kitchen_env import MAX_EPISODE_STEPS
 from kitchen_prefs.simulation.kitchen import FIRST_PLACEMENT
 from kitchen_prefs.utils.files import atomic_file
 from kitchen_prefs.utils.untrusted_files import Strict, parse, read_bytes

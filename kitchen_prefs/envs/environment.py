@@ -1,34 +1,26 @@
 """The gymnasium environment: load the dishwasher as the user of the prompt does."""
 
 from collections.abc import Sequence
-from typing import Any
 
-import gymnasium
 import numpy as np
-from gymnasium.error import ResetNeeded
 
 from kitchen_prefs import instances
 from kitchen_prefs.envs.demonstrations import prompt_of
 from kitchen_prefs.envs.episode_simulator import EpisodeSimulator
 from kitchen_prefs.envs.given_prompt import GivenPrompt
+from kitchen_prefs.envs.kitchen_env import KitchenEnv
 from kitchen_prefs.envs.rewards import reward
-from kitchen_prefs.envs.session_choice import choose_session
-from kitchen_prefs.envs.spaces import action_space, observation_space
+from kitchen_prefs.envs.spaces import observation_space
 from kitchen_prefs.metrics import Episode, success
-from kitchen_prefs.rendering.state import SceneState, scene_of
 from kitchen_prefs.simulation.sessions import Session, make_session, prompt_sessions
 from kitchen_prefs.splits import Split, get_split
 from kitchen_prefs.utils.suggestions import suggest
 
 TRACKS = ("standard", "privileged", "language")
 TASK = "Load the dishwasher as this person likes it, from one demonstration."
-# One constant for the data version: LeRobot reads the first environment's for its whole batch.
-# Twice the longest expert episode of any published session is less
-# (tests/kitchen_prefs/envs/test_environment.py measures it).
-MAX_EPISODE_STEPS = 160
 
 
-class DishwasherLoading(gymnasium.Env):
+class DishwasherLoading(KitchenEnv):
     """`kitchen_prefs/DishwasherLoading-v0`: the sessions of one split.
 
     One step is one decision: pick an object, or, with a dish in hand, a place for it.
@@ -73,10 +65,6 @@ class DishwasherLoading(gymnasium.Env):
         ValueError: If an argument is unknown.
     """
 
-    metadata = {"render_modes": ["rgb_array"], "render_fps": 4}  # noqa: RUF012 (gymnasium's own form)
-    _max_episode_steps = MAX_EPISODE_STEPS
-    task = "kitchen_prefs"
-
     def __init__(
         self,
         split: str = "seen",
@@ -91,98 +79,18 @@ class DishwasherLoading(gymnasium.Env):
         if track not in TRACKS:
             raise ValueError(f"There is no track {track!r}. {suggest(track, TRACKS)}")
         self.split = get_split(split)
-        self._sessions = _sessions_of(self.split, task_id)
+        super().__init__(_sessions_of(self.split, task_id), render_mode)
         self.track = track
         self.prompt_of = prompt_of
         self.prompts = prompts
         self.given = given
-        self.render_mode = render_mode
-        self.action_space = action_space()
         self.observation_space = observation_space(track, prompts, flat)
         self._set_shape = self.observation_space["instances"].shape
-        self._simulator: EpisodeSimulator | None = None
-        self._renderer: Any = None
 
     @property
     def task_description(self) -> str:
         """One constant sentence, or the preference in words on the language track."""
         return self.session.preference.in_words if self.track == "language" else TASK
-
-    def reset(
-        self, *, seed: int | None = None, options: dict[str, Any] | None = None
-    ) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
-        """Start a session; `session_choice.choose_session` says which.
-
-        Args:
-            seed: Starts session `seed` modulo the number of sessions.
-            options: `{"session": i, "salt": k}` starts session i with session seed (salt) k.
-
-        Returns:
-            The observation and the info.
-
-        Raises:
-            ValueError: If there is no such option or session.
-        """
-        super().reset(seed=seed)
-        index, salt = choose_session(self._sessions, seed, options or {}, lambda: self.np_random)
-        preference = self.given.preference if self.given else None
-        session = make_session(self.split.name, index, salt, preference)
-        self._simulator = EpisodeSimulator(session)
-        self._prompt = self.given.rows if self.given else self._prompt_for(session)
-        return self._observe(), self._info("", 0.0)
-
-    def step(
-        self, action: np.ndarray
-    ) -> tuple[dict[str, np.ndarray], float, bool, bool, dict[str, Any]]:
-        """Carry out one decision.
-
-        Args:
-            action: The chosen row's pose: position (m) and quaternion (wxyz), (7,).
-
-        Returns:
-            Observation, reward, terminated, truncated and info.
-
-        Raises:
-            ValueError: If the action has another shape or is not finite.
-            ResetNeeded: If the episode has not begun or has ended.
-        """
-        simulator = self.simulator
-        if simulator.terminated or simulator.truncated:
-            raise ResetNeeded("The episode has ended; call reset() before the next step().")
-        instance, distance = simulator.choose(action)
-        gained = reward(simulator.view, self.session.preference, instance)
-        refusal = simulator.decide(instance, action)
-        earned = 0.0 if refusal else gained
-        info = self._info(refusal, distance)
-        return self._observe(), earned, simulator.terminated, simulator.truncated, info
-
-    def render(self) -> np.ndarray | None:
-        """A picture of the kitchen, (H, W, 3) uint8, if `render_mode` is "rgb_array"."""
-        if self.render_mode is None:
-            return None
-        if self._renderer is None:
-            # MuJoCo and OpenGL are needed for pictures alone.
-            from kitchen_prefs.rendering.renderer import Renderer
-
-            self._renderer = Renderer(480, 360, "fast")
-        return self._renderer.render(self.scene())
-
-    def close(self) -> None:
-        """Release the renderer."""
-        if self._renderer is not None:
-            self._renderer.close()
-            self._renderer = None
-
-    @property
-    def simulator(self) -> EpisodeSimulator:
-        """The episode, from the last `reset` on.
-
-        Raises:
-            ResetNeeded: If there is none.
-        """
-        if self._simulator is None:
-            raise ResetNeeded("The environment has no episode yet; call reset() first.")
-        return self._simulator
 
     @property
     def session(self) -> Session:
@@ -193,13 +101,17 @@ class DishwasherLoading(gymnasium.Env):
         """The facts of the episode so far, from which every metric is computed."""
         return self.simulator.episode()
 
-    def digest(self) -> str:
-        """A hash of the kitchen's state and of all decisions so far, as submissions hold it."""
-        return self.simulator.digest()
+    def _begin(self, index: int, salt: int) -> EpisodeSimulator:
+        preference = self.given.preference if self.given else None
+        session = make_session(self.split.name, index, salt, preference)
+        self._prompt = self.given.rows if self.given else self._prompt_for(session)
+        return EpisodeSimulator(session)
 
-    def scene(self, opened: bool = False) -> SceneState:
-        """What a renderer draws; `opened` shows the load whatever is closed."""
-        return scene_of(self.simulator.kitchen, opened)
+    def _reward(self, instance: int) -> float:
+        return reward(self.simulator.view, self.session.preference, instance)
+
+    def _is_success(self) -> bool:
+        return success(self.episode())
 
     def _prompt_for(self, session: Session) -> np.ndarray:
         sources = prompt_sessions(session, self.prompt_of, self.prompts)
@@ -217,14 +129,6 @@ class DishwasherLoading(gymnasium.Env):
         if self.track == "privileged":
             observed["preference"] = np.array([self.session.label], dtype=np.float32)
         return observed
-
-    def _info(self, refusal: str, distance: float) -> dict[str, Any]:
-        return {
-            "is_success": self.simulator.terminated and success(self.episode()),
-            "refusal": refusal,
-            "distance": distance,
-            "session": self.session.index,
-        }
 
 
 def _sessions_of(split: Split, task_id: int | None) -> Sequence[int]:

@@ -47,6 +47,23 @@ class PeopleSimulator(Simulator):
         """The instance that the expert would choose now."""
         return self.expert.choose()
 
+    def is_right(self, instance: int) -> bool:
+        """Whether a decision is a pick of the rank whose turn it is, or a place in its zone."""
+        kitchen = self.kitchen
+        if kitchen.held is not None:
+            place = self.expert.where_to_put()
+            if place == SINK or kitchen.refusal(instance):
+                return False
+            return self._is_in_its_zone(instance, place)
+        wanted = self.expert.choose()
+        if instance < FIRST_DISH or wanted < FIRST_DISH or kitchen.refusal(instance):
+            return False
+        dishes = np.array([instance, wanted]) - FIRST_DISH
+        own, right = self.expert.targets(dishes)
+        ranks = self.session.expert.plan.ranks[dishes]
+        in_one_rack = own // 2 == right // 2  # zones come in pairs, and the sink after them
+        return bool(in_one_rack and ranks[0] == ranks[1])
+
     def episode(self) -> PeopleEpisode:
         """The facts of the episode so far, from which every metric is computed."""
         session, kitchen = self.session, self.kitchen

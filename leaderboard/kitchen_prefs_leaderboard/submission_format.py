@@ -12,7 +12,7 @@ from typing import Annotated, Literal, get_args
 
 from pydantic import AfterValidator, Field, StringConstraints
 
-from kitchen_prefs.envs.environment import MAX_EPISODE_STEPS
+from kitchen_prefs.envs.kitchen_env import MAX_EPISODE_STEPS
 from kitchen_prefs.splits import TEST_SPLITS
 from kitchen_prefs.utils.untrusted_files import Strict
 from kitchen_prefs.utils.visible_text import check_public_link, check_visible

@@ -5,7 +5,7 @@ from importlib.resources import files
 from importlib.util import find_spec
 from typing import Any
 
-from kitchen_prefs.envs.environment import MAX_EPISODE_STEPS
+from kitchen_prefs.envs.kitchen_env import MAX_EPISODE_STEPS
 from kitchen_prefs.instances import PROMPT_CAPACITY
 from kitchen_prefs.simulation.sessions import Session, make_session
 from kitchen_prefs.splits import DATA_VERSION

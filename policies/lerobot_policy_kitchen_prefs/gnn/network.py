@@ -12,7 +12,7 @@ from torch.nn import functional as F
 from torch_geometric.nn import DenseGATConv
 from torch_geometric.nn.aggr import AttentionalAggregation, MeanAggregation
 
-from kitchen_prefs.envs.environment import MAX_EPISODE_STEPS
+from kitchen_prefs.envs.kitchen_env import MAX_EPISODE_STEPS
 from kitchen_prefs.instances import (
     DECISION,
     EXTENTS,

@@ -10,7 +10,8 @@ from stable_baselines3 import PPO
 from stable_baselines3.common.env_checker import check_env as check_stable_baselines3
 
 from kitchen_prefs import instances
-from kitchen_prefs.envs.environment import MAX_EPISODE_STEPS, TASK, DishwasherLoading
+from kitchen_prefs.envs.environment import TASK, DishwasherLoading
+from kitchen_prefs.envs.kitchen_env import MAX_EPISODE_STEPS
 from kitchen_prefs.envs.simulator import LIMIT_FACTOR
 from kitchen_prefs.metrics import edit_similarity, packing_efficiency
 from kitchen_prefs.simulation import layout

@@ -4,7 +4,7 @@ import pytest
 from chromium import needs_chromium
 from page_visitor import centre, click, drawn, says, show
 
-from kitchen_prefs.envs.environment import MAX_EPISODE_STEPS
+from kitchen_prefs.envs.kitchen_env import MAX_EPISODE_STEPS
 from kitchen_prefs.preferences import TWELVE
 from kitchen_prefs.simulation.kitchen import DOOR, FIRST_DISH, SINK, TOP_RACK
 

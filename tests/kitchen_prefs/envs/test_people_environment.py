@@ -1,0 +1,114 @@
+"""The environment of the second tier: what it shows, and what the expert's actions come to."""
+
+import gymnasium
+import numpy as np
+import pytest
+from gymnasium.utils.env_checker import check_env
+
+import kitchen_prefs  # noqa: F401  (registers the environment)
+from kitchen_prefs import instances
+from kitchen_prefs.metrics.people_episode import PEOPLE_METRICS, care, headline, where
+from kitchen_prefs.people.attributes import RGB
+from kitchen_prefs.people.splits import PEOPLE_SPLITS
+
+ID = "kitchen_prefs/DishwasherPeople-v0"
+
+
+def made(split, **options):
+    return gymnasium.make(ID, split=split, **options).unwrapped
+
+
+def rolled_out(environment, index, act):
+    """The episode of a session, its total reward and its last info."""
+    observation, info = environment.reset(options={"session": index})
+    total, over = 0.0, False
+    while not over:
+        observation, reward, terminated, truncated, info = environment.step(act(environment))
+        total += reward
+        over = terminated or truncated
+        assert environment.observation_space.contains(observation)
+    return environment.episode(), total, info
+
+
+def by_expert(environment):
+    return environment.simulator.expert_action()
+
+
+def at_random(environment):
+    rows = environment.simulator.observation.rows
+    choices = np.flatnonzero(instances.choosable(rows))
+    return rows[environment.np_random.choice(choices), instances.POSE]
+
+
+def test_it_is_a_gymnasium_environment():
+    check_env(made("people_partial"), skip_render_check=True)
+
+
+@pytest.mark.parametrize("split", PEOPLE_SPLITS)
+def test_the_experts_actions_are_perfect(split):
+    environment = made(split)
+    for index in (0, 1):
+        episode, total, info = rolled_out(environment, index, by_expert)
+        assert info["is_success"]
+        assert where(episode) == 1
+        assert care(episode) == 0
+        assert episode.turns[0] == episode.turns[1]
+        assert episode.styled[0] == episode.styled[1] > 0
+        assert len(episode.decisions) == episode.expert_decisions
+        assert total >= episode.dishes
+
+
+def test_random_actions_are_not():
+    environment = made("people_partial")
+    environment.reset(seed=1)
+    episodes = [rolled_out(environment, index, at_random)[0] for index in range(4)]
+    assert headline(episodes) < 0.5
+    for episode in episodes:
+        for name, metric in PEOPLE_METRICS.items():
+            value = metric(episode)
+            assert value is None or value >= 0, name
+            assert name in ("Care", "Refused") or value is None or value <= 1, name
+
+
+def test_rows_say_what_a_dish_is_and_those_of_places_what_is_in_hand():
+    environment = made("people_partial")
+    environment.reset(options={"session": 3})
+    dishes = environment.session.dishes
+    simulator = environment.simulator
+    for _ in range(20):
+        rows, ids = simulator.observation.rows, simulator.observation.ids
+        held = simulator.kitchen.held
+        for row, instance in zip(rows, ids, strict=True):
+            dish = held if instance >= 999 else instance - 3
+            if instance < 3:
+                assert not row[instances.COLUMNS :].any()
+                continue
+            assert row[instances.RGB] == pytest.approx(RGB[dishes.colour[dish]])
+            assert row[instances.MATERIAL].argmax() == dishes.material[dish]
+            assert row[instances.SOIL] == dishes.greasy[dish]
+            assert row[instances.EXTENTS] == pytest.approx(dishes.extents[dish], rel=1e-5)
+        environment.step(by_expert(environment))
+
+
+def test_a_prompt_marks_one_row_of_each_decision():
+    environment = made("people_inconsistent")
+    observation, _ = environment.reset(options={"session": 2})
+    assert observation["prompt"].shape == (3 * instances.PEOPLE_PROMPT_CAPACITY, 22)
+    prompts = np.split(observation["prompt"], 3)
+    for prompt, shown in zip(prompts, environment.session.prompts, strict=True):
+        chosen = prompt[prompt[:, instances.DESCRIBED_COLUMNS] > 0]
+        assert len(chosen) == len(shown.trajectory.decisions)
+        assert chosen[:, instances.DECISION].tolist() == list(range(len(chosen)))
+
+
+def test_it_says_whose_evening_it_is():
+    environment = made("people_evening")
+    evenings = [
+        environment.reset(options={"session": index})[0]["agent_pos"][-1] for index in range(8)
+    ]
+    assert set(evenings) == {0.0, 1.0}
+
+
+def test_flat_sets_have_the_rows_one_after_the_other():
+    flat, rows = (made("people_partial", flat=one).reset(seed=0)[0] for one in (True, False))
+    assert np.array_equal(flat["instances"].reshape(rows["instances"].shape), rows["instances"])
