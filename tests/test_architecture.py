@@ -25,7 +25,7 @@ BENCHMARK = {
     "splits": "utils",
     "simulation": "preferences splits",
     "people": "preferences simulation utils",
-    "physics": "preferences simulation splits utils",
+    "physics": "people preferences simulation splits utils",
     "rendering": "physics preferences simulation utils",
     "envs": "instances metrics people preferences rendering simulation splits utils",
     "datasets": "envs instances metrics preferences rendering simulation splits utils",
@@ -68,6 +68,9 @@ EXPERIMENTS = {
     "reinforcement": (
         "recipes kitchen_prefs.envs kitchen_prefs.evaluation kitchen_prefs.instances "
         "kitchen_prefs.metrics kitchen_prefs.simulation kitchen_prefs.utils"
+    ),
+    "people": (
+        "markdown kitchen_prefs.envs kitchen_prefs.metrics kitchen_prefs.people kitchen_prefs.utils"
     ),
     "paper": (
         "checkpoints lerobot_train markdown recipes kitchen_prefs.datasets "

@@ -12,6 +12,7 @@ from kitchen_prefs.preferences import CATEGORIES
 from kitchen_prefs.simulation import layout
 from kitchen_prefs.simulation.counter_layout import try_to_lay_counter
 from kitchen_prefs.simulation.kitchen import Dishes
+from kitchen_prefs.simulation.placements import LARGEST
 
 MATERIALS = ("ceramic", "glass", "plastic", "wood")
 COLOURS = {
@@ -32,7 +33,7 @@ COMES_IN = {
     "big plate": ("ceramic", "plastic", "wood"),
 }
 GREASY = 0.3  # the share of dishes
-SCALE_DEVIATION, MOST_SCALE = 0.08, 0.15  # of the logarithm of a dish's scale, and of the scale
+SCALE_DEVIATION = 0.08  # of the logarithm of a dish's scale
 LEAST_PRESENT = 0.5  # at least half of the dishes stand there at the start, as in the first tier
 
 EXTENTS = np.array([layout.EXTENTS[category] for category in CATEGORIES])  # (7, 3)
@@ -108,7 +109,7 @@ def _try_to_draw(
     colour = generator.integers(len(COLOURS), size=count).astype(np.int8)
     greasy = generator.random(count) < GREASY
     scale = np.exp(SCALE_DEVIATION * generator.standard_normal(count))
-    scale = np.clip(scale, 1 - MOST_SCALE, 1 + MOST_SCALE).astype(np.float32)
+    scale = np.clip(scale, 2 - LARGEST, LARGEST).astype(np.float32)
     pose = try_to_lay_counter(EXTENTS[category] * scale[:, None], generator)
     if pose is None:
         return None

@@ -32,6 +32,7 @@ from kitchen_prefs.people.zones import SINK_ZONE, ZONES
 from kitchen_prefs.preferences import CATEGORIES
 from kitchen_prefs.simulation.expert import ExpertTrajectory
 from kitchen_prefs.simulation.kitchen import Kitchen, PlacementTable, placement_table
+from kitchen_prefs.simulation.placements import LARGEST
 
 # Sets of prompts that are drawn before the user is drawn anew; one in four is certified.
 ATTEMPTS = 40
@@ -93,8 +94,8 @@ class PeopleSession:
 
 
 def people_table() -> PlacementTable:
-    """Where the dishes of the second tier can stand."""
-    return placement_table()
+    """Where the dishes of the second tier can stand: the placements of its largest dishes."""
+    return placement_table(LARGEST)
 
 
 @lru_cache(maxsize=4096)

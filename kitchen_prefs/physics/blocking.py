@@ -14,32 +14,33 @@ INFLATION = 0.002  # m: settled poses shift a little when dishes come in togethe
 CONTACT_MEMORY = 4 * 2**30  # bytes of address space for the contacts of some 60,000 pairs
 
 
-def blocking_table(category: np.ndarray, poses: np.ndarray) -> np.ndarray:
+def blocking_table(category: np.ndarray, poses: np.ndarray, scale: float = 1.0) -> np.ndarray:
     """Test every pair of placements.
 
     Args:
         category: The index in `CATEGORIES` of each placement's dish, (P,).
         poses: Position and quaternion (wxyz) in the rack's frame, (P, 7).
+        scale: By how much dishes are larger than their categories' extents.
 
     Returns:
         Whether two placements cannot both be taken, (P, P) bool, symmetric, True on the diagonal.
     """
     blocks = np.eye(len(poses), dtype=bool)
     for hulls in (False, True):
-        blocks |= _touching(category, poses, hulls)
+        blocks |= _touching(category, poses, hulls, scale)
     return blocks
 
 
-def _touching(category: np.ndarray, poses: np.ndarray, hulls: bool) -> np.ndarray:
+def _touching(category: np.ndarray, poses: np.ndarray, hulls: bool, scale: float) -> np.ndarray:
     spec = mujoco.MjSpec()
     spec.memory = CONTACT_MEMORY
     for index, pose in zip(category, poses, strict=True):
         body = spec.worldbody.add_body(pos=pose[:3], quat=pose[3:])
         body.add_freejoint()  # MuJoCo does not test bodies that cannot move
         if hulls:
-            add_hull(spec, body, CATEGORIES[index])
+            add_hull(spec, body, CATEGORIES[index], scale)
         else:
-            add_solids(body, CATEGORIES[index])
+            add_solids(body, CATEGORIES[index], scale)
     for geom in spec.geoms:
         geom.margin = INFLATION
     model = spec.compile()

@@ -20,17 +20,18 @@ RACK_ARMATURE = 1e4  # kg: dishes must not hold up a rack whose motion is given
 STAY = (0.03, np.deg2rad(20.0))  # m, rad: a dish that moves more has not stayed
 
 
-def carry(categories: Sequence[str], poses: np.ndarray) -> np.ndarray:
+def carry(categories: Sequence[str], poses: np.ndarray, scale: float = 1.0) -> np.ndarray:
     """Load a rack that is pulled out, let everything settle, and slide the rack in.
 
     Args:
         categories: The categories of the n dishes.
         poses: Their position and quaternion (wxyz) in the rack's frame, (n, 7).
+        scale: By how much they are larger than their categories' extents.
 
     Returns:
         Whether each dish stayed within `STAY` of its pose in the rack, (n,) bool.
     """
-    model = _loaded_rack(categories, poses)
+    model = _loaded_rack(categories, poses, scale)
     data = mujoco.MjData(model)
     while data.time < SETTLING_TIME + SLIDING_TIME:
         data.qpos[0], data.qvel[0] = _slide(data.time - SETTLING_TIME)
@@ -49,7 +50,7 @@ def _slide(time: float) -> tuple[float, float]:
     return RACK_TRAVEL * way, RACK_TRAVEL * speed
 
 
-def _loaded_rack(categories: Sequence[str], poses: np.ndarray) -> mujoco.MjModel:
+def _loaded_rack(categories: Sequence[str], poses: np.ndarray, scale: float) -> mujoco.MjModel:
     spec = physics()
     rack = spec.worldbody.add_body(name="rack")
     rack.add_joint(type=mujoco.mjtJoint.mjJNT_SLIDE, axis=(0.0, 1.0, 0.0), armature=RACK_ARMATURE)
@@ -57,5 +58,5 @@ def _loaded_rack(categories: Sequence[str], poses: np.ndarray) -> mujoco.MjModel
     for category, pose in zip(categories, poses, strict=True):
         dish = spec.worldbody.add_body(pos=pose[:3], quat=pose[3:])
         dish.add_freejoint()
-        add_solids(dish, category)
+        add_solids(dish, category, scale)
     return spec.compile()

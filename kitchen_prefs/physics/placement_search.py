@@ -16,7 +16,7 @@ from tqdm import tqdm
 from kitchen_prefs.physics.blocking import blocking_table
 from kitchen_prefs.physics.settling import Settler, rack_and_dish
 from kitchen_prefs.preferences import CATEGORIES
-from kitchen_prefs.simulation.placements import PLACEMENTS_FILE, RECORD_FILE, Placements
+from kitchen_prefs.simulation.placements import Placements, placements_file
 from kitchen_prefs.utils.files import atomic_file, write_json
 
 KEPT = 48  # of each category: instances.CAPACITY has room for so many places
@@ -25,29 +25,31 @@ BATCHES, PER_BATCH = 16, 10  # so 160 settled poses a category to keep from
 TURN_WEIGHT = 0.05
 
 
-def make_placements(seed: int) -> Placements:
+def make_placements(seed: int, scale: float = 1.0) -> Placements:
     """Make the placements anew, on all cores; about three minutes on two.
 
     Args:
         seed: Of every random drop.
+        scale: By how much dishes are larger than their categories' extents.
 
     Returns:
         At most `KEPT` placements a category, in the order of CATEGORIES.
     """
-    jobs = [(seed, c, batch) for c in range(len(CATEGORIES)) for batch in range(BATCHES)]
+    jobs = [(seed, c, batch, scale) for c in range(len(CATEGORIES)) for batch in range(BATCHES)]
     with ProcessPoolExecutor(mp_context=get_context("spawn")) as pool:
         batches = list(tqdm(pool.map(_settle_batch, jobs), "Settling dishes", len(jobs)))
     settled = np.concatenate(batches).reshape(len(CATEGORIES), -1, 7)
     kept = [_farthest_apart(name, poses) for name, poses in zip(CATEGORIES, settled, strict=True)]
     category = np.repeat(np.arange(len(CATEGORIES), dtype=np.int8), KEPT)
     poses = _canonical(np.concatenate(kept)).astype(np.float32)
-    return Placements(category, poses[:, :3], poses[:, 3:], blocking_table(category, poses))
+    return Placements(category, poses[:, :3], poses[:, 3:], blocking_table(category, poses, scale))
 
 
-def _settle_batch(job: tuple[int, int, int]) -> np.ndarray:
-    """The settled poses of one batch, (PER_BATCH, 7); a job is (seed, category, batch)."""
-    settler = Settler(CATEGORIES[job[1]])
-    return np.array(list(islice(settler.settled(np.random.default_rng(job)), PER_BATCH)))
+def _settle_batch(job: tuple[int, int, int, float]) -> np.ndarray:
+    """The settled poses of one batch, (PER_BATCH, 7); a job is (seed, category, batch, scale)."""
+    *numbers, scale = job
+    settler = Settler(CATEGORIES[job[1]], scale)
+    return np.array(list(islice(settler.settled(np.random.default_rng(numbers)), PER_BATCH)))
 
 
 def _farthest_apart(category: str, poses: np.ndarray) -> np.ndarray:
@@ -88,24 +90,24 @@ def without(placements: Placements, rejected: np.ndarray) -> Placements:
     )
 
 
-def geometry_hash() -> str:
+def geometry_hash(scale: float = 1.0) -> str:
     """A hash of every solid of the rack and the dishes: settled poses hold only for these."""
     sha = hashlib.sha256()
     for category in CATEGORIES:
-        model = rack_and_dish(category)
+        model = rack_and_dish(category, scale)
         for numbers in (model.geom_type, model.geom_size, model.geom_pos, model.geom_quat):
             # To a hundredth of a millimetre: no machine's rounding shows. -0.0 + 0.0 is 0.0.
             sha.update((np.round(numbers, 5) + 0.0).astype("<f8").tobytes())
     return sha.hexdigest()
 
 
-def describe(placements: Placements, seed: int) -> dict[str, Any]:
+def describe(placements: Placements, seed: int, scale: float = 1.0) -> dict[str, Any]:
     """The record that goes with new placements."""
     return {
         "seed": seed,
         "mujoco": mujoco.__version__,
         "machine": platform.machine(),
-        "geometry": geometry_hash(),
+        "geometry": geometry_hash(scale),
         "settled": BATCHES * PER_BATCH,
         "counts": count(placements),
     }
@@ -116,9 +118,10 @@ def count(placements: Placements) -> dict[str, int]:
     return {name: int((placements.category == i).sum()) for i, name in enumerate(CATEGORIES)}
 
 
-def save_placements(placements: Placements, record: dict[str, Any]) -> None:
+def save_placements(placements: Placements, record: dict[str, Any], scale: float = 1.0) -> None:
     """Write the placements and their record where `load_placements` finds them."""
+    file = placements_file(scale)
     arrays = {name: getattr(placements, name) for name in Placements.__dataclass_fields__}
-    with atomic_file(PLACEMENTS_FILE) as unfinished:
+    with atomic_file(file) as unfinished:
         np.savez_compressed(unfinished, **arrays)
-    write_json(RECORD_FILE, record)
+    write_json(file.with_suffix(".json"), record)

@@ -39,11 +39,13 @@ class Settler:
 
     Args:
         category: One of `kitchen_prefs.preferences.CATEGORIES`.
+        scale: By how much the dish is larger than its category's extents.
     """
 
-    def __init__(self, category: str) -> None:
+    def __init__(self, category: str, scale: float = 1.0) -> None:
         self.category = category
-        self.model = rack_and_dish(category)
+        self._points = hull_points(category, scale)  # (n, 3)
+        self.model = rack_and_dish(category, scale)
         self.data = mujoco.MjData(self.model)
 
     def settled(self, rng: np.random.Generator) -> Iterator[np.ndarray]:
@@ -71,7 +73,7 @@ class Settler:
 
     def _random_pose(self, rng: np.random.Generator) -> np.ndarray:
         turn = _random_turn(self.category, rng)
-        points = turn.apply(hull_points(self.category))
+        points = turn.apply(self._points)
         room = (np.array(RACK_INNER) - np.ptp(points[:, :2], axis=0)) / 2
         x, y = rng.uniform(-1.0, 1.0, 2) * np.maximum(room, 0.0)
         pose = np.array([x, y, -points[:, 2].min(), *turn.as_quat(scalar_first=True)])
@@ -101,7 +103,7 @@ class Settler:
     def _stands_well(self) -> bool:
         turn = Rotation.from_quat(self.data.qpos[3:], scalar_first=True)
         return _leans_little(self.category, turn) and _fits(
-            turn.apply(hull_points(self.category)) + self.data.qpos[:3]
+            turn.apply(self._points) + self.data.qpos[:3]
         )
 
     def _rocks(self, rest: np.ndarray) -> bool:
@@ -131,13 +133,13 @@ def physics() -> mujoco.MjSpec:
     return spec
 
 
-def rack_and_dish(category: str) -> mujoco.MjModel:
+def rack_and_dish(category: str, scale: float = 1.0) -> mujoco.MjModel:
     """One fixed rack and one free dish."""
     spec = physics()
     add_wires(spec.worldbody.add_body(name="rack"))
     dish = spec.worldbody.add_body(name="dish")
     dish.add_freejoint()
-    add_solids(dish, category)
+    add_solids(dish, category, scale)
     return spec.compile()
 
 

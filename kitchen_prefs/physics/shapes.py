@@ -52,15 +52,18 @@ class Solid:
 
 
 @cache
-def solids(category: str) -> tuple[Solid, ...]:
+def solids(category: str, scale: float = 1.0) -> tuple[Solid, ...]:
     """The primitives of a category.
 
     Args:
         category: One of `kitchen_prefs.preferences.CATEGORIES`.
+        scale: By how much the dish is larger than its category's extents.
 
     Returns:
         Its solids: cup 18, glass 13, tray 5, bowl 25, plate 13.
     """
+    if scale != 1:
+        return tuple(_scaled(solid, scale) for solid in solids(category))
     if category == "cup":
         return _cup()
     if category == "glass":
@@ -134,6 +137,11 @@ def _plate(category: str) -> tuple[Solid, ...]:
     )
 
 
+def _scaled(solid: Solid, scale: float) -> Solid:
+    size, position = (tuple(scale * x for x in own) for own in (solid.size, solid.position))
+    return Solid(solid.kind, size, position, solid.quaternion)
+
+
 def _disc(radius: float, thickness: float, bottom: float, centre: float = 0.0) -> Solid:
     return Solid("cylinder", (radius, thickness / 2), (centre, 0.0, bottom + thickness / 2))
 
@@ -179,16 +187,17 @@ def _tube(path: np.ndarray) -> list[Solid]:
 
 
 @cache
-def hull_points(category: str) -> np.ndarray:
+def hull_points(category: str, scale: float = 1.0) -> np.ndarray:
     """Points whose convex hull is that of the dish.
 
     Args:
         category: One of `kitchen_prefs.preferences.CATEGORIES`.
+        scale: By how much the dish is larger than its category's extents.
 
     Returns:
         The outermost points of its solids, (n, 3) m.
     """
-    return np.concatenate([_outermost(solid) for solid in solids(category)])
+    return np.concatenate([_outermost(solid) for solid in solids(category, scale)])
 
 
 def _outermost(solid: Solid) -> np.ndarray:

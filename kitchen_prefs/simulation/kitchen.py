@@ -78,9 +78,9 @@ class PlacementTable:
 
 
 @cache
-def placement_table() -> PlacementTable:
-    """The committed placements, moved to where the pulled-out racks hold them."""
-    placements: Placements = load_placements()
+def placement_table(scale: float = 1.0) -> PlacementTable:
+    """The committed placements for dishes of a scale, where the pulled-out racks hold them."""
+    placements: Placements = load_placements(scale)
     pose = {}
     for rack in RACKS:
         origin = np.array(rack_position(rack, out=True))

@@ -1,6 +1,7 @@
 """The committed placements: where dishes can stand in a rack, and which places block each other.
 
-`kitchen-prefs physics make-placements` made `placements.npz`; `placements.json` says how.
+`kitchen-prefs physics make-placements` made `placements.npz`; `placements.json` says how. Those of
+the second tier, whose dishes vary in size, are for the largest: `placements_largest.npz`.
 Reading them needs no MuJoCo.
 """
 
@@ -12,8 +13,8 @@ from typing import Any
 
 import numpy as np
 
-PLACEMENTS_FILE = Path(__file__).with_name("placements.npz")
-RECORD_FILE = PLACEMENTS_FILE.with_suffix(".json")
+LARGEST = 1.15  # by how much a dish of the second tier is at most larger than its extents
+FILES = {1.0: "placements.npz", LARGEST: "placements_largest.npz"}
 
 
 @dataclass(frozen=True)
@@ -33,16 +34,25 @@ class Placements:
     blocks: np.ndarray
 
 
+def placements_file(scale: float = 1.0) -> Path:
+    """The file of the placements for dishes of a scale, 1 or LARGEST."""
+    return Path(__file__).with_name(FILES[scale])
+
+
 @cache
-def load_placements() -> Placements:
-    """The placements of the published kitchen; treat the arrays as read-only."""
-    with np.load(PLACEMENTS_FILE, allow_pickle=False) as arrays:
+def load_placements(scale: float = 1.0) -> Placements:
+    """The placements of the published kitchen; treat the arrays as read-only.
+
+    Args:
+        scale: By how much dishes are larger than their extents, 1 or LARGEST.
+    """
+    with np.load(placements_file(scale), allow_pickle=False) as arrays:
         placements = Placements(**{name: arrays[name] for name in Placements.__dataclass_fields__})
     for name in Placements.__dataclass_fields__:
         getattr(placements, name).setflags(write=False)
     return placements
 
 
-def load_record() -> dict[str, Any]:
+def load_record(scale: float = 1.0) -> dict[str, Any]:
     """How the placements were made: seed, MuJoCo version, geometry hash, counts, truth check."""
-    return json.loads(RECORD_FILE.read_text())
+    return json.loads(placements_file(scale).with_suffix(".json").read_text())

@@ -9,7 +9,6 @@ from kitchen_prefs.people.attributes import (
     CLASSES,
     COMES_IN,
     MATERIALS,
-    MOST_SCALE,
     draw_dishes,
 )
 from kitchen_prefs.people.user_sampling import (
@@ -30,6 +29,7 @@ from kitchen_prefs.people.users import (
 )
 from kitchen_prefs.people.zones import RACK_OF_ZONE, SINK_ZONE, ZONES
 from kitchen_prefs.preferences import CATEGORIES
+from kitchen_prefs.simulation.placements import LARGEST
 
 seeds = st.integers(0, 10**6)
 
@@ -51,7 +51,7 @@ def test_dishes_are_what_their_category_comes_in(seed, count):
     assert set(dishes.category.tolist()) == set(range(len(CATEGORIES)))
     for category, material in zip(dishes.category, dishes.material, strict=True):
         assert MATERIALS[material] in COMES_IN[CATEGORIES[category]]
-    assert (abs(dishes.scale - 1) <= MOST_SCALE + 1e-6).all()
+    assert (abs(dishes.scale - 1) <= LARGEST - 1 + 1e-6).all()
     assert count / 2 - 1 <= dishes.present <= count
     for scheme in SCHEMES:
         classes = dishes.classes(scheme)

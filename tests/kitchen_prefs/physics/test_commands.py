@@ -10,7 +10,7 @@ def saved(monkeypatch):
     """What the command would have written to the data folder."""
     records = []
     monkeypatch.setattr(
-        placement_search, "save_placements", lambda _, record: records.append(record)
+        placement_search, "save_placements", lambda _, record, scale: records.append(record)
     )
     return records
 

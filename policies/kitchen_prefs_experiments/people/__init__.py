@@ -1,0 +1,1 @@
+"""The second tier's tables: what simple readers of a user's demonstrations reach."""

@@ -1,0 +1,46 @@
+"""`kitchen-prefs people`: the tables of the second tier."""
+
+from dataclasses import asdict
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from kitchen_prefs.utils.files import atomic_file, make_folder, write_json
+
+app = typer.Typer(name="people", help="The second tier: people.", no_args_is_help=True)
+
+
+@app.callback()
+def people() -> None:
+    """The second tier: people with rules on material, colour, soil and size."""
+
+
+@app.command("ladder")
+def show_ladder(
+    out: Annotated[Path, typer.Option(help="The folder of ladder.md and ladder.json.")],
+    sessions: Annotated[
+        int | None, typer.Option(help="The first so many of each split.", min=2)
+    ] = None,
+    salt: Annotated[int, typer.Option(help="The session seed.", min=0)] = 0,
+) -> None:
+    """What simple readers of a user's demonstrations reach on each split, from floor to ceiling.
+
+    Example: kitchen-prefs people ladder --sessions=25 --out=outputs/ladder
+    """
+    from kitchen_prefs_experiments.people.ladder import climb, ladder_page
+
+    make_folder(out, "--out")
+    ladder = climb(sessions, salt)
+    page = ladder_page(ladder)
+    facts = {
+        split: {
+            name: {metric: asdict(value.rounded()) for metric, value in metrics.items()}
+            for name, metrics in of_split.items()
+        }
+        for split, of_split in ladder.items()
+    }
+    write_json(out / "ladder.json", facts)
+    with atomic_file(out / "ladder.md") as unfinished:
+        unfinished.write_text(page)
+    typer.echo(page)
