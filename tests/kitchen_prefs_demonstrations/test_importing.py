@@ -123,7 +123,7 @@ def test_a_session_of_the_same_preference_is_the_published_one():
 def test_consent_is_asked_for(files, tmp_path):
     file = tmp_path / "silent.json"
     file.write_text(json.dumps(json.loads(files[0].read_text()) | {"consent": False}))
-    with pytest.raises(ValueError, match=r"silent\.json came without consent .*1 of 2"):
+    with pytest.raises(ValueError, match=r"silent\.json came without consent"):
         import_demonstrations([files[0], file], "silent")
     assert len(import_demonstrations([file], "silent", without_consent=True)) == 1
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-pytest.importorskip("sklearn", reason="needs the extra `robot`")
+pytest.importorskip("fast_simplification", reason="needs the extra `robot`")
 
 from kitchen_prefs_robot.demonstrations.decisions import decision_between
 from kitchen_prefs_robot.demonstrations.preferences import HUMAN_PREFERENCES, human_preference

@@ -3,7 +3,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-pytest.importorskip("sklearn", reason="needs the extra `robot`")
+pytest.importorskip("fast_simplification", reason="needs the extra `robot`")
 
 from kitchen_prefs_robot.perception.calibration import camera_to_base, find_tags, pose_error
 

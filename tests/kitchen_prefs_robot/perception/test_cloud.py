@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-pytest.importorskip("sklearn", reason="needs the extra `robot`")
+pytest.importorskip("fast_simplification", reason="needs the extra `robot`")
 
 from kitchen_prefs_robot.perception.cloud import Cloud, Frame, deproject, moved, thinned, within
 from kitchen_prefs_robot.perception.depth_filter import smoothed

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-pytest.importorskip("sklearn", reason="needs the extra `robot`")
+pytest.importorskip("fast_simplification", reason="needs the extra `robot`")
 
 from kitchen_prefs_robot.perception.categories import KnownDish, nearest_by_colour
 from kitchen_prefs_robot.perception.cloud import Cloud, joined
