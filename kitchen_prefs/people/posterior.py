@@ -263,7 +263,7 @@ class _Described:
         distinct, which = np.unique(masks, axis=0, return_inverse=True)
         return cls(
             np.stack([of_predicate(predicate) for predicate in HAND]),
-            (distinct, np.bincount(which.ravel(), prior)  # NumPy 2.0 gives a column),
+            (distinct, np.bincount(which.ravel(), prior)),  # NumPy 2.0 gives a column
             {s: both(one.classes(s) for one in (shown, asked)) for s in SCHEME},
         )
 
