@@ -104,7 +104,7 @@ def test_a_prompt_marks_one_row_of_each_decision():
 def test_it_says_whose_evening_it_is():
     environment = made("people_evening")
     evenings = [
-        environment.reset(options={"session": index})[0]["agent_pos"][-1] for index in range(8)
+        environment.reset(options={"session": index})[0]["agent_pos"][-1] for index in range(5)
     ]
     assert set(evenings) == {0.0, 1.0}
 

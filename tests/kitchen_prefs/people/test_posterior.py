@@ -17,7 +17,7 @@ from kitchen_prefs.people.zones import OVERFLOW_INDEX
 from kitchen_prefs.preferences import RACKS
 from kitchen_prefs.simulation.kitchen import Kitchen
 
-USERS = range(80)
+USERS = range(50)
 
 
 def shown_by(user, generator):

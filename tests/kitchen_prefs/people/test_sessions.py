@@ -10,7 +10,7 @@ from kitchen_prefs.people.splits import COUNTS, PEOPLE_SPLITS, SLIPS
 from kitchen_prefs.people.user_sampling import COMPOSED, pairs_of
 from kitchen_prefs.preferences import CATEGORIES
 
-FEW = 4
+FEW = 2
 
 
 @pytest.mark.parametrize("name", PEOPLE_SPLITS)
@@ -57,11 +57,11 @@ def test_users_of_training_have_two_sessions_that_prompt_each_other():
 
 def test_slips_are_as_frequent_as_they_should_be():
     slipped = []
-    for index in range(20):
+    for index in range(12):
         session = make_people_session("people_inconsistent", index)
         for prompt in session.prompts:
             slipped += (prompt.plan.zones != session.user.zones(prompt.dishes)).tolist()
-    assert np.mean(slipped) == pytest.approx(SLIPS, abs=0.03)
+    assert np.mean(slipped) == pytest.approx(SLIPS, abs=0.04)
 
 
 @pytest.mark.parametrize(
