@@ -11,7 +11,7 @@ from kitchen_prefs.metrics.people_episode import PeopleEpisode
 from kitchen_prefs.people.attributes import DescribedDishes
 from kitchen_prefs.people.expert import PlanExpert, ends_of
 from kitchen_prefs.people.sessions import PeopleSession, people_table
-from kitchen_prefs.people.zones import IS_IN_RACK, SINK_ZONE, zone_of_placements
+from kitchen_prefs.people.zones import IS_IN_RACK, SINK_ZONE, zone_of_place
 from kitchen_prefs.simulation.kitchen import FIRST_DISH, IN_RACK, SINK, Kitchen
 
 
@@ -54,7 +54,7 @@ class PeopleSimulator(Simulator):
             place = self.expert.where_to_put()
             if place == SINK or kitchen.refusal(instance):
                 return False
-            return self._is_in_its_zone(instance, place)
+            return zone_of_place(kitchen, instance) == zone_of_place(kitchen, place)
         wanted = self.expert.choose()
         if instance < FIRST_DISH or wanted < FIRST_DISH or kitchen.refusal(instance):
             return False
@@ -97,8 +97,11 @@ class PeopleSimulator(Simulator):
         if before.turn is not None:
             self._turns += 1
             self._right_turns += instance - FIRST_DISH in before.turn
-        if before.styled is not None and self._is_in_its_zone(instance, before.styled):
-            self._styled += 1
+        if before.styled is not None:
+            in_its_zone = zone_of_place(self.kitchen, instance) == zone_of_place(
+                self.kitchen, before.styled
+            )
+            self._styled += in_its_zone
             self._right_style += instance == before.styled
 
     def _dishes_in_turn(self) -> frozenset[int] | None:
@@ -115,15 +118,6 @@ class PeopleSimulator(Simulator):
         if len(set(ranks.tolist())) < 2:
             return None
         return frozenset(mine[ranks == ranks.min()].tolist())
-
-    def _is_in_its_zone(self, instance: int, place: int) -> bool:
-        """Whether a chosen place lies in the zone of the right one."""
-        if instance == SINK or instance // 1000 != place // 1000:
-            return False
-        rack = self.kitchen.open_rack
-        assert rack is not None
-        zone = zone_of_placements(self.kitchen.table)[rack]
-        return bool(zone[instance % 1000] == zone[place % 1000])
 
 
 def ends(kitchen: Kitchen) -> Counter[tuple]:

@@ -16,14 +16,15 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from kitchen_prefs.people.attributes import DescribedDishes
-from kitchen_prefs.people.expert import PlanExpert
-from kitchen_prefs.people.users import STYLES, LoadingPlan
+from kitchen_prefs.people.expert import place_by_style
+from kitchen_prefs.people.users import STYLES
 from kitchen_prefs.people.zones import (
     IS_IN_RACK,
     LONGEST,
     OVERFLOWS,
     SINK_ZONE,
     targets_now,
+    zone_of_place,
     zone_of_placements,
 )
 from kitchen_prefs.preferences import RACKS
@@ -32,7 +33,6 @@ from kitchen_prefs.simulation.kitchen import (
     FIRST_DISH,
     FIRST_PLACEMENT,
     RACK_OF_INSTANCE,
-    SINK,
     Kitchen,
     PlacementTable,
 )
@@ -105,7 +105,7 @@ def evidence_of(
         targets = targets_now(kitchen)[:, dishes.category]  # (3, n, 5)
         waiting = kitchen.counter
         if kitchen.held is not None:
-            zone = _zone_of(kitchen, instance)
+            zone = zone_of_place(kitchen, instance)
             allowed[:, :, kitchen.held] &= targets[:, kitchen.held] == zone
             if zone != SINK_ZONE:
                 styles &= _styles_that_place(kitchen, instance)
@@ -142,14 +142,6 @@ def joined_dishes(several: Sequence[DescribedDishes]) -> DescribedDishes:
     return DescribedDishes(present=sum(one.present for one in several), **together)
 
 
-def _zone_of(kitchen: Kitchen, instance: int) -> int:
-    if instance == SINK:
-        return SINK_ZONE
-    assert kitchen.open_rack is not None
-    rack = kitchen.open_rack
-    return int(zone_of_placements(kitchen.table)[rack][instance - FIRST_PLACEMENT[rack]])
-
-
 def _exclude(
     allowed: np.ndarray, kitchen: Kitchen, rack: str, targets: np.ndarray, waiting: np.ndarray
 ) -> None:
@@ -171,9 +163,7 @@ def _styles_that_place(kitchen: Kitchen, instance: int) -> np.ndarray:
     placement = instance - FIRST_PLACEMENT[rack]
     free = kitchen.free(rack, int(kitchen.dishes.category[held]))
     free = free[zone[free] == zone[placement]]
-    nothing = np.empty(0, dtype=int)
-    plans = (LoadingPlan(nothing, nothing, rack, next(iter(OVERFLOWS)), style) for style in STYLES)
-    choices = [PlanExpert(kitchen, plan).by_style(free, rack, held) for plan in plans]
+    choices = [place_by_style(kitchen, style, free, rack, held) for style in STYLES]
     return np.array(choices) == placement
 
 

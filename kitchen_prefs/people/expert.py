@@ -85,34 +85,34 @@ class PlanExpert:
             return SINK
         free = kitchen.free(rack, int(kitchen.dishes.category[dish]))
         free = free[zone_of_placements(kitchen.table)[rack][free] == target]
-        return FIRST_PLACEMENT[rack] + self.by_style(free, rack, dish)
-
-    def by_style(self, free: np.ndarray, rack: str, dish: int) -> int:
-        """The placement of some that the style prefers."""
-        style = self.plan.style
-        relatives = self._relatives(rack, dish)
-        if style in FALLBACK and len(relatives) == 0:
-            style = FALLBACK[style]
-        if style in CORNERS:
-            nearness = corner_distances(self.kitchen.table, rack, style)[free]
-        else:
-            poses = self.kitchen.table.pose[rack]
-            apart = poses[free, None, :2] - poses[None, relatives, :2]  # (f, k, 2)
-            nearness = np.hypot(*np.moveaxis(apart, -1, 0)).min(axis=1)
-            nearness = -nearness if style == "apart from its family" else nearness
-        return int(free[np.argmin(nearness)])
+        return FIRST_PLACEMENT[rack] + place_by_style(kitchen, self.plan.style, free, rack, dish)
 
     def _next(self, dishes: np.ndarray) -> int:
         """The dish of the lowest rank, of one rank the nearest to the sink."""
         order = np.lexsort((self._nearness[dishes], self.plan.ranks[dishes]))
         return FIRST_DISH + int(dishes[order[0]])
 
-    def _relatives(self, rack: str, dish: int) -> np.ndarray:
-        """The placements in a rack that dishes of a dish's family take."""
-        kitchen = self.kitchen
-        family = FAMILY_OF[kitchen.dishes.category]
-        own = (kitchen.location == IN_RACK[rack]) & (family == family[dish])
-        return kitchen.placement[own]
+
+def place_by_style(kitchen: Kitchen, style: str, free: np.ndarray, rack: str, dish: int) -> int:
+    """The placement of some in a rack that a style prefers for a dish."""
+    relatives = _relatives(kitchen, rack, dish)
+    if style in FALLBACK and len(relatives) == 0:
+        style = FALLBACK[style]
+    if style in CORNERS:
+        nearness = corner_distances(kitchen.table, rack, style)[free]
+    else:
+        poses = kitchen.table.pose[rack]
+        apart = poses[free, None, :2] - poses[None, relatives, :2]  # (f, k, 2)
+        nearness = np.hypot(*np.moveaxis(apart, -1, 0)).min(axis=1)
+        nearness = -nearness if style == "apart from its family" else nearness
+    return int(free[np.argmin(nearness)])
+
+
+def _relatives(kitchen: Kitchen, rack: str, dish: int) -> np.ndarray:
+    """The placements in a rack that dishes of a dish's family take."""
+    family = FAMILY_OF[kitchen.dishes.category]
+    own = (kitchen.location == IN_RACK[rack]) & (family == family[dish])
+    return kitchen.placement[own]
 
 
 @cache

@@ -33,6 +33,7 @@ from kitchen_prefs.preferences import CATEGORIES
 from kitchen_prefs.simulation.expert import ExpertTrajectory
 from kitchen_prefs.simulation.kitchen import Kitchen, PlacementTable, placement_table
 from kitchen_prefs.simulation.placements import LARGEST
+from kitchen_prefs.simulation.sessions import check_session
 
 # Sets of prompts that are drawn before the user is drawn anew; one in four is certified.
 ATTEMPTS = 40
@@ -114,10 +115,7 @@ def make_people_session(split: str, index: int, salt: int = 0) -> PeopleSession:
         ValueError: If the split, the index or the salt does not exist.
     """
     where = get_people_split(split)
-    if not 0 <= index < where.sessions:
-        raise ValueError(f"Split {split!r} has the sessions 0..{where.sessions - 1}, not {index}.")
-    if salt < 0:
-        raise ValueError(f"A salt is a natural number, not {salt}.")
+    check_session(split, where.sessions, index, salt)
     if where.sessions_each > 1:
         return _sessions_of_user(where, where.user(index), salt)[index % where.sessions_each]
     for attempt in count():

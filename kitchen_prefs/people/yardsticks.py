@@ -21,7 +21,7 @@ from kitchen_prefs.people.posterior import Posterior
 from kitchen_prefs.people.users import LoadingPlan
 from kitchen_prefs.people.zones import RACK_OF_ZONE, SINK_ZONE
 from kitchen_prefs.preferences import CATEGORIES, RACKS
-from kitchen_prefs.simulation.kitchen import FIRST_DISH, Kitchen
+from kitchen_prefs.simulation.kitchen import FIRST_DISH, RACK_OF_INSTANCE, Kitchen
 
 # How much two dishes are alike that have the same category, material, and so on: what most rules
 # of the grammar speak of weighs most.
@@ -59,7 +59,7 @@ def shown_in(loads: Sequence[tuple[Kitchen, Sequence[int], Evidence]], slips: fl
     for kitchen, decisions, _ in loads:
         zones.append(np.minimum(ends_of(kitchen), SINK_ZONE))
         times.append([_time_of(dish, decisions) for dish in range(len(kitchen.location))])
-        racks = [rack for rack in (_rack_of_toggle(one) for one in decisions) if rack]
+        racks = [RACK_OF_INSTANCE[one] for one in decisions if one in RACK_OF_INSTANCE]
         firsts.append(racks[0] if racks else RACKS[0])
     dishes = [kitchen.dishes for kitchen, *_ in loads]
     assert all(isinstance(one, DescribedDishes) for one in dishes)
@@ -157,7 +157,3 @@ def _features(dishes: DescribedDishes) -> np.ndarray:
 def _time_of(dish: int, decisions: Sequence[int]) -> float:
     picked = FIRST_DISH + dish
     return decisions.index(picked) / len(decisions) if picked in decisions else 1.0
-
-
-def _rack_of_toggle(instance: int) -> str | None:
-    return {1: "bottom", 2: "top"}.get(instance)

@@ -5,7 +5,13 @@ from functools import cache
 import numpy as np
 
 from kitchen_prefs.preferences import CATEGORIES, RACKS
-from kitchen_prefs.simulation.kitchen import Kitchen, PlacementTable, rack_position
+from kitchen_prefs.simulation.kitchen import (
+    FIRST_PLACEMENT,
+    SINK,
+    Kitchen,
+    PlacementTable,
+    rack_position,
+)
 
 # A placement lies in the half on whose side its middle is.
 ZONES = ("top left", "top right", "bottom left", "bottom right")
@@ -42,6 +48,15 @@ def targets_now(kitchen: Kitchen) -> np.ndarray:
     free[:, :SINK_ZONE] = free_zones(kitchen)
     first = free[:, TRIED].argmax(axis=-1)  # (7, 3, 5)
     return np.moveaxis(np.take_along_axis(TRIED[None], first[..., None], -1)[..., 0], 0, 1)
+
+
+def zone_of_place(kitchen: Kitchen, instance: int) -> int:
+    """The zone of a place: of a placement in the rack that is out, or SINK_ZONE."""
+    if instance == SINK:
+        return SINK_ZONE
+    assert kitchen.open_rack is not None
+    rack = kitchen.open_rack
+    return int(zone_of_placements(kitchen.table)[rack][instance - FIRST_PLACEMENT[rack]])
 
 
 def free_zones(kitchen: Kitchen) -> np.ndarray:

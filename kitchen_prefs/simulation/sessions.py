@@ -98,10 +98,7 @@ def make_session(
         ValueError: If the split, the index or the salt does not exist.
     """
     where = get_split(split)
-    if not 0 <= index < where.sessions:
-        raise ValueError(f"Split {split!r} has the sessions 0..{where.sessions - 1}, not {index}.")
-    if salt < 0:
-        raise ValueError(f"A salt is a natural number, not {salt}.")
+    check_session(split, where.sessions, index, salt)
     user = where.users[index]
     preference = preference or _preference_of(user, salt)
     generator = _generator(split, salt, index, "dishes")
@@ -111,6 +108,18 @@ def make_session(
         session = Session(split, index, salt, user, preference, where.count(index), dishes)
         if not where.serves_prompts or _shows_every_category(session):
             return session
+
+
+def check_session(split: str, sessions: int, index: int, salt: int) -> None:
+    """Make sure that a split of so many sessions has one.
+
+    Raises:
+        ValueError: If the index or the salt does not exist.
+    """
+    if not 0 <= index < sessions:
+        raise ValueError(f"Split {split!r} has the sessions 0..{sessions - 1}, not {index}.")
+    if salt < 0:
+        raise ValueError(f"A salt is a natural number, not {salt}.")
 
 
 @lru_cache(maxsize=4096)
