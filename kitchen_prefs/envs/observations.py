@@ -24,7 +24,6 @@ from kitchen_prefs.simulation.kitchen import (
     TOP_RACK,
     Kitchen,
     Location,
-    placement_table,
     rack_position,
 )
 
@@ -159,7 +158,7 @@ class Observer:
         rows[-1, instances.POSE] = SINK_POSE
         if kitchen.open_rack is None:
             return rows, np.array([SINK])
-        rows[:-1, instances.POSE] = placement_table().pose[kitchen.open_rack][placements]
+        rows[:-1, instances.POSE] = kitchen.table.pose[kitchen.open_rack][placements]
         return rows, np.append(FIRST_PLACEMENT[kitchen.open_rack] + placements, SINK)
 
     def _joints(self) -> np.ndarray:
@@ -198,9 +197,9 @@ class Observer:
         free = kitchen.free(rack, int(kitchen.dishes.category[kitchen.held]))
         if len(free) == 0:
             return np.zeros(8)
-        nearness = placement_nearness()[rack]
+        nearness = placement_nearness(kitchen.table)[rack]
         nearest = min(free.tolist(), key=nearness.__getitem__)
-        return np.array([1, *placement_table().pose[rack][nearest]])
+        return np.array([1, *kitchen.table.pose[rack][nearest]])
 
 
 def _object_row(extents: tuple[float, float, float], pose: tuple[float, ...]) -> np.ndarray:

@@ -23,8 +23,8 @@ from kitchen_prefs.simulation.kitchen import (
     RACK_INSTANCE,
     SINK,
     Kitchen,
+    PlacementTable,
     decision_kind,
-    placement_table,
     rack_position,
 )
 
@@ -132,10 +132,9 @@ def nearness_to_corner(pose: np.ndarray, rack: str) -> Nearness:
 
 
 @cache
-def placement_nearness() -> dict[str, list[Nearness]]:
-    """`nearness_to_corner` of every placement in the table, rack -> P of them."""
-    poses = placement_table().pose
-    return {rack: [nearness_to_corner(pose, rack) for pose in poses[rack]] for rack in RACKS}
+def placement_nearness(table: PlacementTable) -> dict[str, list[Nearness]]:
+    """`nearness_to_corner` of every placement in a table, rack -> P of them."""
+    return {rack: [nearness_to_corner(pose, rack) for pose in table.pose[rack]] for rack in RACKS}
 
 
 class KitchenView:
@@ -178,10 +177,8 @@ class KitchenView:
         assert kitchen.held is not None
         assert kitchen.open_rack is not None
         category = kitchen.dishes.category[kitchen.held]
-        nearness, first = (
-            placement_nearness()[kitchen.open_rack],
-            FIRST_PLACEMENT[kitchen.open_rack],
-        )
+        nearness = placement_nearness(kitchen.table)[kitchen.open_rack]
+        first = FIRST_PLACEMENT[kitchen.open_rack]
         return [
             Option(CATEGORIES[category], nearness[placement], first + placement)
             for placement in kitchen.free(kitchen.open_rack, category).tolist()

@@ -90,6 +90,17 @@ def test_rows_say_what_a_dish_is_and_those_of_places_what_is_in_hand():
         environment.step(by_expert(environment))
 
 
+def test_a_dish_ends_where_the_row_of_its_place_said():
+    environment = made("people_partial")
+    environment.reset(options={"session": 3})
+    kitchen, over = environment.simulator.kitchen, False
+    while not over:
+        held, action = kitchen.held, by_expert(environment)
+        *_, over, _, _ = environment.step(action)
+        if held is not None and kitchen.placement[held] >= 0:
+            np.testing.assert_array_equal(kitchen.pose[held], action)
+
+
 def test_a_prompt_marks_one_row_of_each_decision():
     environment = made("people_inconsistent")
     observation, _ = environment.reset(options={"session": 2})
