@@ -12,8 +12,11 @@ padded with rows of zeros to `CAPACITY`; a real row is an object or a place, so 
 LeRobot's tools take flat columns alone, so data sets, and LeRobot's environments, have a set as its
 rows one after the other, (936,); `as_rows` gives the rows.
 
-A prompt is a whole demonstration: the sets of all its decisions, one below the other, with a
-fourteenth column that marks the row which each decision chose.
+A row of the second tier has eight columns more, and its sets more rows: (76, 21), or flat (1596,).
+The size says which, so all functions here take sets of both tiers, as rows or flat.
+
+A prompt is a whole demonstration: the sets of all its decisions, one below the other, with one more
+column, the last, that marks the row which each decision chose.
 """
 
 from typing import Any
@@ -39,8 +42,10 @@ DESCRIBED_COLUMNS = 21
 CAPACITY = 3 + 20 + 48 + 1
 DESCRIBED_CAPACITY = 3 + 24 + 48 + 1
 FLAT_SIZE = CAPACITY * COLUMNS
+DESCRIBED_FLAT_SIZE = DESCRIBED_CAPACITY * DESCRIBED_COLUMNS
+COLUMNS_OF_FLAT = {FLAT_SIZE: COLUMNS, DESCRIBED_FLAT_SIZE: DESCRIBED_COLUMNS}
 
-CHOSEN = 13  # the prompt's last column
+CHOSEN = 13  # the last column of the first tier's prompts
 PROMPT_COLUMNS = 14
 # A prompt has at most 14 dishes, each picked among 17 rows and placed among 66, and at most 26
 # toggles among 17 rows, 6 to load what is there and 20 for what arrives later: 1604 rows.
@@ -49,13 +54,17 @@ PROMPT_CAPACITY = 1664
 # toggles among 21 rows: 2016.
 PEOPLE_PROMPT_CAPACITY = 2048
 
+# The number of rows that sets, and prompts, are padded to, by the columns of a set's rows.
+CAPACITIES = {COLUMNS: CAPACITY, DESCRIBED_COLUMNS: DESCRIBED_CAPACITY}
+PROMPT_CAPACITIES = {COLUMNS: PROMPT_CAPACITY, DESCRIBED_COLUMNS: PEOPLE_PROMPT_CAPACITY}
 
-def pack(rows: np.ndarray, capacity: int = CAPACITY) -> np.ndarray:
+
+def pack(rows: np.ndarray, capacity: int | None = None) -> np.ndarray:
     """Pad a set with zero rows.
 
     Args:
         rows: The set, (n, D).
-        capacity: The number of rows of the result.
+        capacity: The number of rows of the result; None takes that of the tier's sets.
 
     Returns:
         The padded set, (capacity, D) float32.
@@ -63,6 +72,8 @@ def pack(rows: np.ndarray, capacity: int = CAPACITY) -> np.ndarray:
     Raises:
         ValueError: If the set has more rows than fit.
     """
+    if capacity is None:
+        capacity = CAPACITIES[rows.shape[1]]
     if len(rows) > capacity:
         raise ValueError(f"A set of {len(rows)} rows does not fit the capacity of {capacity}.")
     padded = np.zeros((capacity, rows.shape[1]), dtype=np.float32)
@@ -74,12 +85,12 @@ def unpad(instances: np.ndarray) -> np.ndarray:
     """Give back the set that `pack` padded.
 
     Args:
-        instances: A padded set, (N, D), or flat, (N 13,).
+        instances: A padded set, (N, D), or flat, (N D,).
 
     Returns:
         The rows that are objects or places, (n, D).
     """
-    rows = instances.reshape(-1, COLUMNS) if instances.ndim == 1 else instances
+    rows = as_rows(instances)
     return rows[is_real(rows)]
 
 
@@ -87,30 +98,31 @@ def unpad(instances: np.ndarray) -> np.ndarray:
 
 
 def as_rows(sets: Any) -> Any:
-    """Sets as rows, (..., N, 13), from such sets or from flat ones, (..., N 13)."""
-    if sets.shape[-1] == COLUMNS:
-        return sets
-    return sets.reshape(*sets.shape[:-1], -1, COLUMNS)
+    """Sets as rows, (..., N, D), from such sets or from flat ones, (..., N D)."""
+    columns = COLUMNS_OF_FLAT.get(sets.shape[-1])
+    return sets if columns is None else sets.reshape(*sets.shape[:-1], -1, columns)
 
 
-def is_real(rows: Any) -> Any:
-    """Which rows, (..., D), are objects or places and not padding, (...) bool."""
+def is_real(sets: Any) -> Any:
+    """Which rows of sets, (..., N, D) or flat, are objects or places, not padding, (..., N) bool."""
+    rows = as_rows(sets)
     return rows[..., IS_OBJECT] + rows[..., IS_PLACE] > 0
 
 
 def is_place_decision(sets: Any) -> Any:
-    """Which sets, (..., N, D), belong to place decisions, those with places, (...) bool."""
-    return (sets[..., IS_PLACE] > 0).any(-1)
+    """Which sets, (..., N, D) or flat, belong to place decisions and have places, (...) bool."""
+    return (as_rows(sets)[..., IS_PLACE] > 0).any(-1)
 
 
 def choosable(sets: Any) -> Any:
     """The rows that decisions may choose: the places if there are any, else the objects.
 
     Args:
-        sets: Sets, padded or not, (..., N, D).
+        sets: Sets, padded or not, (..., N, D) or flat.
 
     Returns:
         A mask, (..., N) bool.
     """
-    is_place, is_object = sets[..., IS_PLACE] > 0, sets[..., IS_OBJECT] > 0
-    return is_place | (is_object & ~is_place_decision(sets)[..., None])
+    rows = as_rows(sets)
+    is_place, is_object = rows[..., IS_PLACE] > 0, rows[..., IS_OBJECT] > 0
+    return is_place | (is_object & ~is_place_decision(rows)[..., None])

@@ -81,9 +81,8 @@ class DishwasherPeople(KitchenEnv):
     def _observe(self) -> dict[str, np.ndarray]:
         observation = self.simulator.observation
         environment_state, state = self.simulator.observer.flat(observation)
-        padded = instances.pack(observation.rows, instances.DESCRIBED_CAPACITY)
         return {
-            "instances": padded.reshape(self._set_shape),
+            "instances": instances.pack(observation.rows).reshape(self._set_shape),
             "environment_state": environment_state,
             "agent_pos": np.append(state, np.float32(self.session.evening)),
             "prompt": self._prompt.copy(),
@@ -93,9 +92,10 @@ class DishwasherPeople(KitchenEnv):
 def people_observation_space(prompts: int, flat: bool) -> Dict:
     """What the environment shows, with a number of demonstrations in the prompt."""
     rows = (instances.DESCRIBED_CAPACITY, instances.DESCRIBED_COLUMNS)
+    flat_rows = (instances.DESCRIBED_FLAT_SIZE,)
     capacity = prompts * instances.PEOPLE_PROMPT_CAPACITY
     shapes = {
-        "instances": (rows[0] * rows[1],) if flat else rows,
+        "instances": flat_rows if flat else rows,
         "environment_state": (ENVIRONMENT_STATE_SIZE,),
         "agent_pos": (STATE_SIZE + 1,),
         "prompt": (capacity, instances.DESCRIBED_COLUMNS + 1),

@@ -100,8 +100,9 @@ class Simulator:
 
         An oracle, which no track shows: it knows, for one, which placements are blocked.
         """
-        feasible = np.zeros(instances.CAPACITY, dtype=bool)
-        for row in np.flatnonzero(instances.choosable(self.observation.rows)):
+        rows = self.observation.rows
+        feasible = np.zeros(instances.CAPACITIES[rows.shape[1]], dtype=bool)
+        for row in np.flatnonzero(instances.choosable(rows)):
             feasible[row] = not self.kitchen.refusal(int(self.observation.ids[row]))
         return feasible
 

@@ -1,4 +1,4 @@
-"""Instance sets: what is packed comes back."""
+"""Instance sets: what is packed comes back, in both tiers."""
 
 import numpy as np
 import pytest
@@ -9,23 +9,32 @@ from hypothesis.extra.numpy import arrays
 
 from kitchen_prefs import instances
 
+WIDTHS = sorted(instances.CAPACITIES)  # of the rows of both tiers
+
 
 @st.composite
-def sets(draw):
-    n = draw(st.integers(1, instances.CAPACITY))
+def sets(draw, widths=st.sampled_from(WIDTHS)):
+    width = draw(widths)
+    n = draw(st.integers(1, instances.CAPACITIES[width]))
     values = st.floats(-10, 10, width=32)
-    rows = draw(arrays(np.float32, (n, instances.COLUMNS), elements=values))
+    rows = draw(arrays(np.float32, (n, width), elements=values))
     places = draw(arrays(bool, n))
     rows[:, instances.IS_OBJECT] = ~places
     rows[:, instances.IS_PLACE] = places
     return rows
 
 
+several_sets = st.sampled_from(WIDTHS).flatmap(
+    lambda width: st.lists(sets(st.just(width)), min_size=1, max_size=4)
+)
+
+
 @given(sets())
 def test_unpad_gives_back_what_pack_took(rows):
     padded = instances.pack(rows)
-    assert padded.shape == (instances.CAPACITY, instances.COLUMNS)
+    assert padded.shape == (instances.CAPACITIES[rows.shape[1]], rows.shape[1])
     np.testing.assert_array_equal(instances.unpad(padded), rows)
+    np.testing.assert_array_equal(instances.unpad(padded.ravel()), rows)
 
 
 @given(sets())
@@ -38,16 +47,19 @@ def test_a_decision_chooses_places_if_there_are_any(rows):
 
 
 @pytest.mark.parametrize("kind", [np.asarray, torch.from_numpy], ids=["numpy", "torch"])
-@given(st.lists(sets(), min_size=1, max_size=4))
-def test_a_batch_is_treated_like_each_of_its_sets(kind, several):
+@given(several_sets)
+def test_a_batch_is_treated_like_each_of_its_sets_as_rows_or_flat(kind, several):
     alone = [instances.pack(rows) for rows in several]
-    batch = kind(np.stack(alone)[:, None])  # (B, 1, N, 13)
+    batch = kind(np.stack(alone)[:, None])  # (B, 1, N, D)
+    flat = batch.reshape(len(alone), 1, -1)  # (B, 1, N D)
     for function in (instances.is_real, instances.is_place_decision, instances.choosable):
         expected = np.stack([function(rows) for rows in alone])[:, None]
         np.testing.assert_array_equal(function(batch), expected)
+        np.testing.assert_array_equal(function(flat), expected)
 
 
-def test_too_large_a_set_is_refused():
-    rows = np.ones((instances.CAPACITY + 1, instances.COLUMNS), dtype=np.float32)
+@pytest.mark.parametrize("width", WIDTHS)
+def test_too_large_a_set_is_refused(width):
+    rows = np.ones((instances.CAPACITIES[width] + 1, width), dtype=np.float32)
     with pytest.raises(ValueError, match="does not fit the capacity"):
         instances.pack(rows)
