@@ -3,6 +3,7 @@
 attributes    what a dish is beside its category, and in which classes people divide dishes
 users         a user: hand wash, exceptions, base zones, overflow, order, style
 user_sampling the prior of the grammar, from which users are drawn
+words         a user in words
 expert        loads a kitchen as a user does
 splits        the ten splits
 sessions      session i of a split: its user, its dishes, its prompts
