@@ -104,7 +104,7 @@ def as_rows(sets: Any) -> Any:
 
 
 def is_real(sets: Any) -> Any:
-    """Which rows of sets, (..., N, D) or flat, are objects or places, not padding, (..., N) bool."""
+    """Which rows of sets, (..., N, D) or flat, are no padding, (..., N) bool."""
     rows = as_rows(sets)
     return rows[..., IS_OBJECT] + rows[..., IS_PLACE] > 0
 

@@ -1,6 +1,6 @@
 """Demonstrations, the expert's and others: one frame a decision, for data sets and prompts."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -19,7 +19,7 @@ class Demonstration:
     """An episode of a session, by the expert or by a person, T decisions.
 
     Attributes:
-        instances: The padded instance sets, (T, N, 13) float32.
+        instances: The padded instance sets, (T, N, D) float32.
         environment_state: (T, E) float32, see `observations.ENVIRONMENT_STATE`.
         state: (T, S) float32, see `observations.STATE`.
         action: The chosen row's pose, (T, 7) float32.
@@ -27,8 +27,8 @@ class Demonstration:
         reward: The paper's dense reward, (T,) float32.
         done: True at the last decision, (T,) bool.
         success: True at the last decision if everything is then put away and closed, (T,) bool.
-        preference: The preference's label.
-        task: The preference in words.
+        preference: The preference's label; in the second tier the user's number in the split.
+        task: The preference, or the user, in words.
     """
 
     instances: np.ndarray
@@ -58,11 +58,41 @@ def record(session: Session, decisions: Sequence[int]) -> Demonstration:
     Raises:
         ValueError: If there are none, or if the kitchen refuses one.
     """
+    kitchen = Kitchen(session.dishes)
+    view = KitchenView(kitchen)
+    return record_in(
+        kitchen,
+        Observer(kitchen, session.generator("order"), None),
+        decisions,
+        reward_of=lambda instance: reward(view, session.preference, instance),
+        label=session.label,
+        task=session.preference.in_words,
+    )
+
+
+def record_in(
+    kitchen: Kitchen,
+    observer: Observer,
+    decisions: Sequence[int],
+    reward_of: Callable[[int], float],
+    label: int,
+    task: str,
+) -> Demonstration:
+    """Record decisions in a kitchen of either tier as a demonstration.
+
+    Args:
+        kitchen: Where they are taken, which this changes.
+        observer: Observes it.
+        decisions: The chosen instances, T of them.
+        reward_of: What a decision earns that is about to be taken.
+        label: The label of the preference or the user.
+        task: The preference or the user in words.
+
+    Raises:
+        ValueError: If there are no decisions, or if the kitchen refuses one.
+    """
     if not decisions:
         raise ValueError("A demonstration has at least one decision.")
-    kitchen = Kitchen(session.dishes)
-    observer = Observer(kitchen, session.generator("order"), None)
-    view = KitchenView(kitchen)
     observations, flats, rewards = [], [], []
     chosen: list[int] = []
     for instance in decisions:
@@ -72,7 +102,7 @@ def record(session: Session, decisions: Sequence[int]) -> Demonstration:
         observations.append(observation)
         flats.append(observer.flat(observation))
         chosen.append(observation.row_of(instance))
-        rewards.append(reward(view, session.preference, instance))
+        rewards.append(reward_of(instance))
         kitchen.decide(instance)
     last = np.arange(len(chosen)) == len(chosen) - 1
     rows = [observation.rows[row] for observation, row in zip(observations, chosen, strict=True)]
@@ -85,8 +115,8 @@ def record(session: Session, decisions: Sequence[int]) -> Demonstration:
         reward=np.array(rewards, dtype=np.float32),
         done=last,
         success=last & kitchen.finished,
-        preference=session.label,
-        task=session.preference.in_words,
+        preference=label,
+        task=task,
     )
 
 
@@ -101,7 +131,7 @@ def as_prompt(demonstration: Demonstration) -> np.ndarray:
 
     Returns:
         The sets of all its decisions, one below the other and padded, with a last column that marks
-        the chosen rows, (P, 14) float32, read-only.
+        the chosen rows, (P, D + 1) float32, read-only.
 
     Raises:
         ValueError: If it has more rows than a prompt.
@@ -109,17 +139,18 @@ def as_prompt(demonstration: Demonstration) -> np.ndarray:
     return marked_prompt(demonstration.instances, demonstration.chosen_index)
 
 
-def marked_prompt(sets: np.ndarray, chosen: np.ndarray) -> np.ndarray:
-    """A prompt of padded sets, (T, N, 13) or flat, and of their chosen rows, (T,); see `as_prompt`.
+def marked_prompt(sets: Iterable[np.ndarray], chosen: Iterable[int]) -> np.ndarray:
+    """A prompt of padded sets, (T, N, D) or flat, and of their chosen rows, (T,); see `as_prompt`.
 
     Raises:
         ValueError: If they have more rows than a prompt.
     """
     parts = []
     for padded, choice in zip(sets, chosen, strict=True):
-        rows = instances.unpad(padded)  # (n, 13)
+        rows = instances.unpad(padded)  # (n, D)
         mark = np.arange(len(rows)) == choice
         parts.append(np.column_stack([rows, mark]))
-    prompt = instances.pack(np.concatenate(parts), instances.PROMPT_CAPACITY)
+    capacity = instances.PROMPT_CAPACITIES[rows.shape[1]]
+    prompt = instances.pack(np.concatenate(parts), capacity)
     prompt.flags.writeable = False
     return prompt

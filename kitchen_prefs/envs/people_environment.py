@@ -6,7 +6,7 @@ from gymnasium.spaces import Box, Dict
 from kitchen_prefs import instances
 from kitchen_prefs.envs.kitchen_env import KitchenEnv
 from kitchen_prefs.envs.observations import ENVIRONMENT_STATE_SIZE, STATE_SIZE
-from kitchen_prefs.envs.people_demonstrations import people_prompt_of
+from kitchen_prefs.envs.people_demonstrations import people_prompt_of, with_evening
 from kitchen_prefs.envs.people_simulator import PeopleSimulator
 from kitchen_prefs.metrics.people_episode import PeopleEpisode, where
 from kitchen_prefs.people.sessions import PeopleSession, make_people_session
@@ -84,7 +84,7 @@ class DishwasherPeople(KitchenEnv):
         return {
             "instances": instances.pack(observation.rows).reshape(self._set_shape),
             "environment_state": environment_state,
-            "agent_pos": np.append(state, np.float32(self.session.evening)),
+            "agent_pos": with_evening(state, self.session.evening),
             "prompt": self._prompt.copy(),
         }
 

@@ -10,10 +10,11 @@ from hypothesis.extra.numpy import arrays
 from kitchen_prefs import instances
 
 WIDTHS = sorted(instances.CAPACITIES)  # of the rows of both tiers
+either_width = st.sampled_from(WIDTHS)
 
 
 @st.composite
-def sets(draw, widths=st.sampled_from(WIDTHS)):
+def sets(draw, widths=either_width):
     width = draw(widths)
     n = draw(st.integers(1, instances.CAPACITIES[width]))
     values = st.floats(-10, 10, width=32)
@@ -24,7 +25,7 @@ def sets(draw, widths=st.sampled_from(WIDTHS)):
     return rows
 
 
-several_sets = st.sampled_from(WIDTHS).flatmap(
+several_sets = either_width.flatmap(
     lambda width: st.lists(sets(st.just(width)), min_size=1, max_size=4)
 )
 
