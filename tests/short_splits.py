@@ -10,6 +10,8 @@ from pathlib import Path
 
 import pytest
 
+from kitchen_prefs.people.sessions import make_people_session
+from kitchen_prefs.people.splits import PEOPLE_SPLITS, PEOPLE_TEST_SPLITS
 from kitchen_prefs.splits import SPLITS, TEST_SPLITS
 
 SESSIONS = 6
@@ -25,4 +27,17 @@ def short_splits(sessions=SESSIONS):
         for name in ("val", *TEST_SPLITS):
             split = SPLITS[name]
             patch.setitem(SPLITS, name, replace(split, users=split.users[:sessions]))
+        with short_people_splits(sessions):
+            yield
+
+
+@contextmanager
+def short_people_splits(sessions):
+    """Cut the splits of the second tier down, without certificates, which take a second each."""
+    make_people_session.cache_clear()
+    with pytest.MonkeyPatch.context() as patch:
+        for name in ("people_val", *PEOPLE_TEST_SPLITS):
+            short = replace(PEOPLE_SPLITS[name], users=sessions, certified=False)
+            patch.setitem(PEOPLE_SPLITS, name, short)
         yield
+    make_people_session.cache_clear()

@@ -29,7 +29,7 @@ BENCHMARK = {
     "rendering": "physics preferences simulation utils",
     "envs": "instances metrics people preferences rendering simulation splits utils",
     "datasets": "envs instances metrics preferences rendering simulation splits utils",
-    "evaluation": "datasets envs metrics simulation splits utils",
+    "evaluation": "datasets envs metrics people simulation splits utils",
     "web": "preferences simulation splits",
     "cli": "datasets evaluation physics",
     "__init__": "datasets",

@@ -8,7 +8,7 @@ from kitchen_prefs.envs.kitchen_env import KitchenEnv
 from kitchen_prefs.envs.observations import ENVIRONMENT_STATE_SIZE, STATE_SIZE
 from kitchen_prefs.envs.people_demonstrations import people_prompt_of, with_evening
 from kitchen_prefs.envs.people_simulator import PeopleSimulator
-from kitchen_prefs.metrics.people_episode import PeopleEpisode, where
+from kitchen_prefs.metrics.people_episode import PeopleEpisode, success
 from kitchen_prefs.people.sessions import PeopleSession, make_people_session
 from kitchen_prefs.people.splits import get_people_split
 
@@ -76,7 +76,7 @@ class DishwasherPeople(KitchenEnv):
         return float(self.simulator.is_right(instance))
 
     def _is_success(self) -> bool:
-        return where(self.episode()) == 1.0
+        return success(self.episode())
 
     def _observe(self) -> dict[str, np.ndarray]:
         observation = self.simulator.observation

@@ -11,6 +11,7 @@ from kitchen_prefs.metrics.people_episode import PeopleEpisode
 from kitchen_prefs.people.attributes import DescribedDishes
 from kitchen_prefs.people.expert import PlanExpert, ends_of
 from kitchen_prefs.people.sessions import PeopleSession, people_table
+from kitchen_prefs.people.splits import get_people_split
 from kitchen_prefs.people.zones import IS_IN_RACK, SINK_ZONE, zone_of_place
 from kitchen_prefs.simulation.kitchen import FIRST_DISH, IN_RACK, SINK, Kitchen
 
@@ -74,6 +75,7 @@ class PeopleSimulator(Simulator):
             split=session.split,
             session=session.index,
             salt=session.salt,
+            preference=get_people_split(session.split).user(session.index),
             dishes=len(kitchen.location),
             alike=(mine & theirs).total(),
             turns=(self._right_turns, self._turns),

@@ -1,4 +1,4 @@
-"""Selects the best checkpoint of a training run: the one with the highest Score on val."""
+"""Selects the best checkpoint of a training run: the one with the highest headline on val."""
 
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -6,6 +6,7 @@ from pathlib import Path
 from kitchen_prefs.evaluation.evaluator import Evaluator
 from kitchen_prefs.evaluation.policy_loading import load_policy
 from kitchen_prefs.evaluation.rollouts import BATCH_SIZE
+from kitchen_prefs.evaluation.tiers import TIERS, tier_of
 from kitchen_prefs.metrics import Interval
 from kitchen_prefs.utils.files import write_json
 
@@ -24,7 +25,11 @@ class Selection:
 
 
 def select_checkpoint(
-    run: Path, *, track: str | None = None, batch_size: int = BATCH_SIZE
+    run: Path,
+    *,
+    split: str = "val",
+    track: str | None = None,
+    batch_size: int = BATCH_SIZE,
 ) -> Selection:
     """Evaluate a run's checkpoints on val and write RUN/selection.json.
 
@@ -32,12 +37,17 @@ def select_checkpoint(
 
     Args:
         run: The output folder of `lerobot-train` or `kitchen-prefs reinforce`.
+        split: Where they are evaluated: val, or people_val of the second tier.
         track: What the policy observes; if not given, the track of its settings.
         batch_size: How many sessions are rolled out at once.
 
     Raises:
-        ValueError: If the run has no checkpoints.
+        ValueError: If the run has no checkpoints, or if the split is not for choosing.
     """
+    tier = tier_of(split)
+    if split != tier.val:
+        choices = " or ".join(f"--split={one.val}" for one in TIERS.values())
+        raise ValueError(f"No checkpoint is chosen on {split}; give {choices}.")
     folders = {
         folder.parent.name: folder
         for folder in sorted(run.glob("checkpoints/*/pretrained_model"))
@@ -47,13 +57,13 @@ def select_checkpoint(
         raise ValueError(f"{run} holds no checkpoints; give the output folder of a training.")
     metrics = {}
     for step, folder in folders.items():
-        loaded_policy = load_policy(str(folder), track=track)
+        loaded_policy = load_policy(str(folder), track=track, split=split)
         evaluator = Evaluator(loaded_policy, run / "selection" / step, batch_size=batch_size)
-        metrics[step] = evaluator.evaluate("val").metrics
-    best = max(folders, key=lambda step: metrics[step]["Score"].mean)
+        metrics[step] = evaluator.evaluate(split).metrics
+    best = max(folders, key=lambda step: metrics[step][tier.headline].mean)
     content = {
         "best": str(folders[best].relative_to(run)),
-        "split": "val",
+        "split": split,
         "checkpoints": {
             step: {name: asdict(interval) for name, interval in of_step.items()}
             for step, of_step in metrics.items()

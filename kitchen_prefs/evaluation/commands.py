@@ -4,10 +4,10 @@ LeRobot and torch take many seconds to import, so the commands import what needs
 `--help` stays quick.
 """
 
-from collections.abc import Iterable, Sequence
-from contextlib import ExitStack
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 from rich.console import Console
@@ -20,8 +20,8 @@ from kitchen_prefs.evaluation.policy_options import (
     PolicyType,
     settings_of,
 )
-from kitchen_prefs.metrics import FURTHER_METRICS, METRICS, Interval, reference_scores
-from kitchen_prefs.splits import get_split
+from kitchen_prefs.evaluation.tiers import PREFERENCES, Tier, tier_of
+from kitchen_prefs.metrics import Interval
 from kitchen_prefs.utils.files import at_work_alone, make_folder
 
 if TYPE_CHECKING:
@@ -80,6 +80,8 @@ def evaluate(
 
     OUT holds one line per episode, so a command that was killed resumes.
     Any other --policy.SETTING=VALUE overrides a setting of the policy.
+    Splits of both tiers have tables of their own: people_val, people_unseen and others are those
+    of the second.
     With --untrusted the policy receives observations through a pipe and sees nothing else, as in
     re-runs of the leaderboard.
 
@@ -97,72 +99,91 @@ def evaluate(
     --policy.path=policies/checkpoints/ttp_plus
     """
     names = _names(split)
+    tiers = list(dict.fromkeys(map(tier_of, names)))
     settings = settings_of(context.args)
     if prompt and (prompt_use or prompts > 1):
         raise ValueError("--prompt gives the only prompt; leave out --prompts and --prompt-use.")
     given = read_prompt(prompt) if prompt else None
+    for tier in tiers:
+        tier.check(
+            track=track or "standard",
+            prompt_of="other" if prompt_use else "same",
+            prompts=prompts,
+            given=given,
+            expert_states=category_accuracy,
+        )
     make_folder(out, "--out")
     from kitchen_prefs.evaluation.evaluator import Evaluator
-    from kitchen_prefs.evaluation.policy_loading import load_policy
+    from kitchen_prefs.evaluation.isolation.policy_settings import policy_settings
 
-    with ExitStack() as stack:
-        policy: LoadedPolicy | IsolatedPolicy
-        if untrusted:
-            policy = stack.enter_context(_isolated(path, policy_type, settings, track, out))
-        else:
-            policy = load_policy(path, policy_type, settings, track=track)
-        evaluator = Evaluator(policy, out, salt, prompts, given, batch_size)
-        summaries = []
-        for name in names:
-            with at_work_alone(out / name):
-                summary = evaluator.evaluate(
-                    name, with_prompt_use=prompt_use, with_category_accuracy=category_accuracy
-                )
-            _print_summary(summary)
-            summaries.append(summary)
-        if len(summaries) > 1:
-            _print_overview(summaries, evaluator.mean_of_splits(names))
+    for tier in tiers:
+        arguments = policy_settings(path, policy_type, settings, track, tier.val)
+        with _loaded(arguments, out, untrusted) as policy:
+            evaluator = Evaluator(policy, out, salt, prompts, given, batch_size)
+            own = [name for name in names if name in tier.splits]
+            summaries = []
+            for name in own:
+                with at_work_alone(out / name):
+                    summary = evaluator.evaluate(
+                        name, with_prompt_use=prompt_use, with_category_accuracy=category_accuracy
+                    )
+                _print_summary(summary)
+                summaries.append(summary)
+            if len(own) > 1:
+                _print_overview(tier, summaries, evaluator.mean_of_splits(own))
     console.print(f"Episodes and summaries are in {out}.")
 
 
-def _isolated(
-    path: str | None, policy_type: str | None, settings: list[str], track: str | None, out: Path
-) -> "IsolatedPolicy":
-    from kitchen_prefs.evaluation.isolation.isolated_policy import IsolatedPolicy
-    from kitchen_prefs.evaluation.isolation.policy_settings import policy_settings
-    from kitchen_prefs.evaluation.isolation.sandbox import warn_without_sandbox
+@contextmanager
+def _loaded(
+    arguments: dict[str, Any], out: Path, untrusted: bool
+) -> "Iterator[LoadedPolicy | IsolatedPolicy]":
+    """The policy that `load_policy` makes of some arguments, in a process of its own if asked."""
+    if untrusted:
+        from kitchen_prefs.evaluation.isolation.isolated_policy import IsolatedPolicy
+        from kitchen_prefs.evaluation.isolation.sandbox import warn_without_sandbox
 
-    warn_without_sandbox()
-    arguments = policy_settings(path, policy_type, settings, track)
-    return IsolatedPolicy(arguments, out / "policy.log", hidden=[out])
+        warn_without_sandbox()
+        with IsolatedPolicy(arguments, out / "policy.log", hidden=[out]) as policy:
+            yield policy
+    else:
+        from kitchen_prefs.evaluation.policy_loading import load_policy
+
+        yield load_policy(**arguments)
 
 
 @app.command()
 def select(
     run: Annotated[Path, typer.Argument(help="The output folder of lerobot-train or `reinforce`.")],
     track: Track = None,
+    split: Annotated[
+        str, typer.Option(help="val, or people_val for a policy of the second tier.")
+    ] = PREFERENCES.val,
     batch_size: BatchSize = 16,
 ) -> None:
-    """Evaluate a run's saved checkpoints on val and name the one with the best Score.
+    """Evaluate a run's saved checkpoints on val and name the one with the best headline.
 
-    Writes RUN/selection.json; a command that was killed resumes.
+    Writes RUN/selection.json; a command that was killed resumes. The headline is Score, or H of
+    the second tier.
 
     For example:
     kitchen-prefs select outputs/ttp_quick
+    kitchen-prefs select outputs/ttp_people --split=people_val
     """
     from kitchen_prefs.evaluation.checkpoint_selection import select_checkpoint
 
-    selection = select_checkpoint(run, track=track, batch_size=batch_size)
-    table = Table("Step", *METRICS, title="val")
+    selection = select_checkpoint(run, split=split, track=track, batch_size=batch_size)
+    tier = tier_of(split)
+    columns = tier.tables[0]
+    table = Table("Step", *columns, title=split)
     for step, metrics in selection.metrics.items():
-        _add_intervals(table, step, metrics, METRICS)
+        _add_intervals(table, step, metrics, columns)
     console.print(table)
-    console.print(f"The best by Score is {selection.best}.")
+    console.print(f"The best by {tier.headline} is {selection.best}.")
 
 
 def _names(splits: Sequence[str]) -> list[str]:
-    names = [name.strip() for text in splits for name in text.split(",")]
-    return list(dict.fromkeys(get_split(name).name for name in names))
+    return list(dict.fromkeys(name.strip() for text in splits for name in text.split(",")))
 
 
 def _print_summary(summary: "Summary") -> None:
@@ -172,11 +193,12 @@ def _print_summary(summary: "Summary") -> None:
         metrics.add_row(name, f"{interval.mean:.3f}", f"{interval.low:.3f} to {interval.high:.3f}")
     console.print(metrics)
     console.print(f"Success with its Wilson interval is {summary.wilson_success}.")
-    references = reference_scores().get(summary.split)
+    tier = tier_of(summary.split)
+    references = tier.references().get(summary.split)
     if references and "Rescaled" in summary.metrics:
         console.print(
-            f"Rescaled is 0 at the Score {references['floor']:.3f} (the rule promptless) and 1 at "
-            f"{references['ceiling']:.3f} (the rule bayes)."
+            f"Rescaled is 0 at the {tier.headline} {references['floor']:.3f} (the rule "
+            f"{tier.floor}) and 1 at {references['ceiling']:.3f} (the rule {tier.ceiling})."
         )
     modes = Table("Failure mode", "Episodes", "Times")
     for mode, (episodes, times) in summary.failure_modes.items():
@@ -186,8 +208,8 @@ def _print_summary(summary: "Summary") -> None:
         console.print(modes)
 
 
-def _print_overview(summaries: Sequence["Summary"], mean: dict[str, Interval]) -> None:
-    for names in (METRICS, FURTHER_METRICS):
+def _print_overview(tier: Tier, summaries: Sequence["Summary"], mean: dict[str, Interval]) -> None:
+    for names in tier.tables:
         table = Table("Split", *names, title="Means")
         for summary in summaries:
             _add_intervals(table, summary.split, summary.metrics, names)
@@ -196,7 +218,7 @@ def _print_overview(summaries: Sequence["Summary"], mean: dict[str, Interval]) -
 
 
 def _add_intervals(
-    table: Table, name: str, metrics: dict[str, Interval], names: Iterable[str]
+    table: Table, name: str, metrics: dict[str, Interval], names: Sequence[str]
 ) -> None:
     """Add three rows: intervals side by side would be wider than a terminal."""
     intervals = [metrics.get(metric) for metric in names]

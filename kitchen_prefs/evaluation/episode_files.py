@@ -10,7 +10,8 @@ from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 from typing import Any
 
-from kitchen_prefs.metrics import ALL_METRICS, Episode, category_accuracy, failure_modes
+from kitchen_prefs.evaluation.tiers import AnyEpisode, tier_of
+from kitchen_prefs.metrics import category_accuracy
 from kitchen_prefs.utils.files import write_json
 
 
@@ -65,13 +66,13 @@ class EpisodeFile:
         _drop_incomplete_line(path)
         self.episodes = read_episodes(path)
 
-    def append(self, episode: Episode) -> None:
+    def append(self, episode: AnyEpisode) -> None:
         """Write an episode, with its metrics and failure modes."""
         with self.path.open("a") as file:
             file.write(json.dumps(asdict(episode) | self._metrics(episode)) + "\n")
         self.episodes.append(episode)
 
-    def _metrics(self, episode: Episode) -> dict[str, dict[str, Any]]:
+    def _metrics(self, episode: Any) -> dict[str, dict[str, Any]]:
         """The metrics and failure modes of an episode.
 
         In the expert's states the expert loads the racks, so only the accuracy of the policy's
@@ -79,14 +80,15 @@ class EpisodeFile:
         """
         if self.conditions.expert_states:
             return {"metrics": {"Category accuracy": category_accuracy(episode)}}
+        tier = tier_of(episode.split)
         return {
-            "metrics": {name: metric(episode) for name, metric in ALL_METRICS.items()},
-            "failure_modes": failure_modes(episode),
+            "metrics": {name: metric(episode) for name, metric in tier.metrics.items()},
+            "failure_modes": tier.failure_modes(episode),
         }
 
 
-def read_episodes(path: Path) -> list[Episode]:
-    """Read the episodes of a file.
+def read_episodes(path: Path) -> list[Any]:
+    """Read the episodes of a file, each of its split's tier.
 
     Raises:
         ValueError: If a line is not an episode.
@@ -142,15 +144,15 @@ def _drop_incomplete_line(path: Path) -> None:
             file.truncate(content.rfind(b"\n") + 1)
 
 
-def _parse(line: str, where: str) -> Episode:
+def _parse(line: str, where: str) -> AnyEpisode:
     try:
         content = json.loads(line)
-        facts = {field.name: _tuples(content[field.name]) for field in fields(Episode)}
-        return Episode(**facts)
+        episode = tier_of(content["split"]).episode
+        return episode(**{field.name: _tuples(content[field.name]) for field in fields(episode)})
     except (KeyError, TypeError, ValueError) as error:
         raise ValueError(f"{where} is not an episode; delete the file to start anew.") from error
 
 
 def _tuples(value: Any) -> Any:
-    """Turn lists, as JSON has them, into the tuples of an `Episode`."""
+    """Turn lists, as JSON has them, into the tuples of an episode."""
     return tuple(map(_tuples, value)) if isinstance(value, list) else value

@@ -5,24 +5,22 @@ from dataclasses import asdict, dataclass
 from functools import cached_property
 from importlib.metadata import version
 from pathlib import Path
+from typing import Any
 
 from kitchen_prefs.envs.given_prompt import GivenPrompt
 from kitchen_prefs.evaluation.episode_files import EpisodeFile, EvaluationConditions
 from kitchen_prefs.evaluation.isolation.isolated_policy import IsolatedPolicy
 from kitchen_prefs.evaluation.policy_loading import LoadedPolicy
 from kitchen_prefs.evaluation.rollouts import BATCH_SIZE, roll_out
+from kitchen_prefs.evaluation.tiers import tier_of
 from kitchen_prefs.metrics import (
-    Episode,
     Interval,
     category_accuracy,
     count_failure_modes,
-    mean_of_splits_all,
     prompt_use,
     summarise,
-    summarise_all,
-    wilson_success,
+    wilson,
 )
-from kitchen_prefs.splits import DATA_VERSION
 from kitchen_prefs.utils.files import write_json
 
 
@@ -81,29 +79,35 @@ class Evaluator:
             ValueError: If the folder holds episodes of another policy, track, session seed (salt),
                 prompt, number of prompts or version.
         """
+        tier = tier_of(split)
         episodes = self.episodes(split)
-        metrics = self._comparable(summarise_all(episodes))
+        metrics = self._comparable(tier.summarise(episodes))
         if with_prompt_use:
             metrics["Prompt use"] = prompt_use(episodes, self.episodes(split, prompt_of="other"))
         if with_category_accuracy:
             on_expert_states = self.episodes(split, expert_states=True)
             metrics["Category accuracy"] = summarise(on_expert_states, category_accuracy)
         summary = Summary(
-            split, len(episodes), metrics, wilson_success(episodes), count_failure_modes(episodes)
+            split,
+            len(episodes),
+            metrics,
+            wilson(sum(map(tier.success, episodes)), len(episodes)),
+            count_failure_modes(map(tier.failure_modes, episodes)),
         )
-        conditions = self._conditions("same", expert_states=False)
+        conditions = self._conditions(split, "same", expert_states=False)
         write_json(
             self.folder / f"{split}.json", {**asdict(summary), "conditions": asdict(conditions)}
         )
         return summary
 
     def mean_of_splits(self, splits: Sequence[str]) -> dict[str, Interval]:
-        """Each metric's mean over splits, each of which counts the same."""
-        return self._comparable(mean_of_splits_all([self.episodes(split) for split in splits]))
+        """Each metric's mean over splits of one tier, each of which counts the same."""
+        episodes = [self.episodes(split) for split in splits]
+        return self._comparable(tier_of(splits[0]).mean_of_splits(episodes))
 
     def episodes(
         self, split: str, *, prompt_of: str = "same", expert_states: bool = False
-    ) -> list[Episode]:
+    ) -> list[Any]:
         """The policy's episodes on a split; those not in the folder are rolled out first."""
         return roll_out(
             self.loaded_policy,
@@ -127,7 +131,7 @@ class Evaluator:
     def _fingerprint(self) -> str:
         return self.loaded_policy.fingerprint
 
-    def _conditions(self, prompt_of: str, expert_states: bool) -> EvaluationConditions:
+    def _conditions(self, split: str, prompt_of: str, expert_states: bool) -> EvaluationConditions:
         policy = self.loaded_policy
         return EvaluationConditions(
             policy=policy.type,
@@ -137,7 +141,7 @@ class Evaluator:
             prompts=self.prompts,
             expert_states=expert_states,
             salt=self.salt,
-            data_version=DATA_VERSION,
+            data_version=tier_of(split).data_version,
             package_version=version("lerobot_policy_kitchen_prefs"),
             given_prompt=self.given.digest if self.given else None,
         )
@@ -147,5 +151,5 @@ class Evaluator:
     ) -> EpisodeFile:
         """The file of the policy's episodes on a split."""
         name = split + "-other-prompt" * (prompt_of == "other") + "-expert-states" * expert_states
-        conditions = self._conditions(prompt_of, expert_states)
+        conditions = self._conditions(split, prompt_of, expert_states)
         return EpisodeFile(self.folder / f"{name}.jsonl", conditions)

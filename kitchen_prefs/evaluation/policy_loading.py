@@ -76,7 +76,7 @@ class LoadedPolicy:
         return self.postprocessor(action).to("cpu", torch.float32).numpy()
 
     def _as_trained(self, sets: torch.Tensor) -> torch.Tensor:
-        """The sets, (B, 72, 13), flat, as data sets have them since their second format."""
+        """The sets, (B, N, D), flat, as data sets have them since their second format."""
         feature = (self.policy.config.input_features or {}).get(OBS_INSTANCES)
         rows = feature is not None and len(feature.shape) == 2
         return sets if rows else sets.flatten(1)
@@ -110,6 +110,7 @@ def load_policy(
     *,
     track: str | None = None,
     below: str | None = None,
+    split: str = "seen",
 ) -> LoadedPolicy:
     """Load a checkpoint, or make a policy that needs no training.
 
@@ -121,6 +122,7 @@ def load_policy(
             ask for, or else the standard one.
         below: The folder of the policy that an adapter was trained on; if not given, the one that
             the adapter names.
+        split: The split whose observations a checkpoint has to fit.
 
     Returns:
         The policy, ready to act.
@@ -135,35 +137,39 @@ def load_policy(
         if path:
             folder = find_checkpoint(path)
             found = Path(below) if below else find_policy_below(folder)
-            return _trained(folder, options, track, found)
+            return _trained(folder, options, track, found, split)
         return _untrained(str(policy_type), options, track)
     except ParsingError as error:
         raise ValueError(f"The policy's settings are wrong: {error.__cause__ or error}") from error
 
 
 def _trained(
-    folder: Path, options: Sequence[str], track: str | None, below: Path | None
+    folder: Path, options: Sequence[str], track: str | None, below: Path | None, split: str
 ) -> LoadedPolicy:
     config = read_config(folder, options)
-    environment = _environment(config, track)
+    environment = _environment(config, track, split)
     _check_features(config, environment)
     preprocessor, postprocessor = read_processors(folder, config)
     policy = read_policy(folder, config, options, below)
     adapter = None
     if below:
-        adapted = _trained(below, (), track, None)
+        adapted = _trained(below, (), track, None, split)
         adapter = Adapter(*read_adapter(folder), adapted.fingerprint)
     return LoadedPolicy(policy, preprocessor, postprocessor, environment.track, adapter)
 
 
 def _untrained(policy_type: str, options: Sequence[str], track: str | None) -> LoadedPolicy:
-    """Make a policy without weights; LeRobot's factory would warn that it lacks statistics."""
+    """Make a policy without weights; LeRobot's factory would warn that it lacks statistics.
+
+    It fits observations of any shape. Its settings name those of the split `seen`, whatever it is
+    evaluated on, so that one policy has one fingerprint.
+    """
     known = PreTrainedConfig.get_known_choices()
     if policy_type not in known:
         raise ValueError(f"There is no policy type {policy_type!r}. {suggest(policy_type, known)}")
     check_settings("The policy", setting_names(known[policy_type]), options)
     config = draccus.parse(known[policy_type], args=list(options))
-    environment = _environment(config, track)
+    environment = _environment(config, track, "seen")
     features = env_to_policy_features(environment)
     config.output_features = {ACTION: features.pop(ACTION)}
     config.input_features = features
@@ -175,10 +181,10 @@ def _untrained(policy_type: str, options: Sequence[str], track: str | None) -> L
     return LoadedPolicy(policy, preprocessor, postprocessor, environment.track)
 
 
-def _environment(config: PreTrainedConfig, track: str | None) -> KitchenPrefsEnv:
+def _environment(config: PreTrainedConfig, track: str | None, split: str) -> KitchenPrefsEnv:
     asked_for: str = getattr(config, "track", "standard")
     # With sets as rows, so that policies without a checkpoint keep the fingerprints they have had.
-    return KitchenPrefsEnv(track=track or asked_for, flat=False)
+    return KitchenPrefsEnv(task=split, track=track or asked_for, flat=False)
 
 
 def _check_features(config: PreTrainedConfig, environment: KitchenPrefsEnv) -> None:
@@ -191,7 +197,7 @@ def _check_features(config: PreTrainedConfig, environment: KitchenPrefsEnv) -> N
                 f"The policy was trained on {name!r}, which the environment does not show on the "
                 f"{environment.track} track."
             )
-        # A set is flat, or has the shape (72, 13) in checkpoints of the data's first format.
+        # A set is flat, or has rows in checkpoints of the data's first format.
         same_set = name == OBS_INSTANCES and prod(feature.shape) == prod(observed[name].shape)
         if not same_set and tuple(feature.shape) != tuple(observed[name].shape):
             raise ValueError(

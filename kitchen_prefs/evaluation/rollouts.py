@@ -3,18 +3,16 @@
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from itertools import batched
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 import torch
 from tqdm import tqdm
 
-from kitchen_prefs.envs.environment import DishwasherLoading
 from kitchen_prefs.envs.given_prompt import GivenPrompt
 from kitchen_prefs.evaluation.episode_files import EpisodeFile
-from kitchen_prefs.metrics import Episode
+from kitchen_prefs.evaluation.tiers import AnyEpisode, tier_of
 from kitchen_prefs.simulation.kitchen import decision_kind
-from kitchen_prefs.splits import get_split
 
 BATCH_SIZE = 16  # environments in one forward pass; more gains little on a CPU
 
@@ -43,12 +41,12 @@ def roll_out(
     batch_size: int = BATCH_SIZE,
     file: EpisodeFile | None = None,
     quiet: bool = False,
-) -> list[Episode]:
+) -> list[Any]:
     """Roll a policy out on sessions of a split.
 
     Args:
         policy: The policy.
-        split: The split's name.
+        split: The split's name, of either tier.
         sessions: Which sessions, all if not given.
         salt: The session seed; 0 is the published one.
         track: The track of the environment.
@@ -65,19 +63,19 @@ def roll_out(
         quiet: Show no progress bar.
 
     Returns:
-        One episode per session, in the order of the sessions.
+        One episode of the split's tier per session, in the order of the sessions.
 
     Raises:
         ValueError: If the split, a session, the track or `prompt_of` does not exist, or if there
             are fewer prompts than asked for.
     """
-    wanted = list(range(get_split(split).sessions) if sessions is None else sessions)
+    tier = tier_of(split)
+    wanted = list(range(tier.sessions(split)) if sessions is None else sessions)
     episodes = {e.session: e for e in file.episodes} if file else {}
     missing = [session for session in wanted if session not in episodes]
-    environments = [
-        DishwasherLoading(split, track, prompt_of, prompts, given=given)
-        for _ in range(min(batch_size, len(missing)))
-    ]
+    asked = {"track": track, "prompt_of": prompt_of, "prompts": prompts, "given": given}
+    tier.check(**asked, expert_states=expert_states)
+    environments = [tier.environment(split, **asked) for _ in range(min(batch_size, len(missing)))]
     name, done = file.path.stem if file else split, len(wanted) - len(missing)
     with (
         tqdm(
@@ -103,11 +101,11 @@ def roll_out(
 
 def _roll_out_batch(
     policy: Policy,
-    environments: Sequence[DishwasherLoading],
+    environments: Sequence[Any],
     sessions: Sequence[int],
     salt: int,
     expert_states: bool,
-) -> Iterator[Episode]:
+) -> Iterator[AnyEpisode]:
     """Roll out one session in each environment and yield each episode as soon as it ends.
 
     The batch keeps its size to the end, because policies keep a state per environment; actions for
@@ -137,7 +135,7 @@ def _roll_out_batch(
                 )
 
 
-def _on_expert_states(environment: DishwasherLoading, chosen: list[int]) -> Episode:
+def _on_expert_states(environment: Any, chosen: list[int]) -> AnyEpisode:
     """The expert's episode, with what the policy would have chosen as its decisions."""
     episode = environment.episode()
     return replace(

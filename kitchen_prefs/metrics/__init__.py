@@ -1,8 +1,10 @@
 """The metrics: functions of an episode, and their means with intervals.
 
-episode    the facts of one finished episode
-scores     the metrics, each a function of an episode
-intervals  means over episodes with 95 % intervals
+episode     the facts of one finished episode
+scores      the metrics, each a function of an episode
+intervals   means over episodes with 95 % intervals
+references  the headlines of floor and ceiling, between which a headline is rescaled
+people_*    the same for the second tier
 """
 
 from kitchen_prefs.metrics.episode import Episode
@@ -16,6 +18,7 @@ from kitchen_prefs.metrics.intervals import (
     wilson,
     wilson_success,
 )
+from kitchen_prefs.metrics.references import reference_scores
 from kitchen_prefs.metrics.scores import (
     ALL_METRICS,
     FURTHER_METRICS,
@@ -28,7 +31,6 @@ from kitchen_prefs.metrics.scores import (
     edit_similarity,
     failure_modes,
     packing_efficiency,
-    reference_scores,
     refused_decisions,
     rescaled_score,
     score,

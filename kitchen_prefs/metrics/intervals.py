@@ -1,8 +1,8 @@
 """Means over episodes with 95 % intervals: the bootstrap's, and Wilson's for success."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Self
+from typing import Protocol, Self
 
 import numpy as np
 
@@ -31,6 +31,18 @@ class Interval:
             low=round(self.low, DIGITS),
             high=round(self.high, DIGITS),
         )
+
+
+class Grouped(Protocol):
+    """An episode of either tier, as far as resampling knows it."""
+
+    @property
+    def split(self) -> str:
+        """The split's name."""
+
+    @property
+    def preference(self) -> int:
+        """Whose episodes are resampled together."""
 
 
 def summarise(episodes: Sequence[Episode], metric: Metric) -> Interval:
@@ -96,7 +108,9 @@ def prompt_use(episodes: Sequence[Episode], swapped: Sequence[Episode]) -> Inter
     return _bootstrap(episodes, gains)
 
 
-def mean_of_splits(splits: Sequence[Sequence[Episode]], metric: Metric) -> Interval:
+def mean_of_splits[E: Grouped](
+    splits: Sequence[Sequence[E]], metric: Callable[[E], float | None]
+) -> Interval:
     """The mean of a metric over several splits, each of which counts the same.
 
     Args:
@@ -112,7 +126,7 @@ def mean_of_splits(splits: Sequence[Sequence[Episode]], metric: Metric) -> Inter
     of_splits = [_with_values(episodes, metric) for episodes in splits]
     means = [_resample(episodes, values, generator) for episodes, values in of_splits]
     mean = float(np.mean([np.mean(values) for _, values in of_splits]))
-    return _interval(mean, np.mean(means, axis=0))
+    return interval_of(mean, np.mean(means, axis=0))
 
 
 def mean_of_splits_all(splits: Sequence[Sequence[Episode]]) -> dict[str, Interval]:
@@ -128,7 +142,9 @@ def _has_values(episodes: Sequence[Episode], metric: Metric) -> bool:
     return any(metric(episode) is not None for episode in episodes)
 
 
-def _with_values(episodes: Sequence[Episode], metric: Metric) -> tuple[list[Episode], list[float]]:
+def _with_values[E: Grouped](
+    episodes: Sequence[E], metric: Callable[[E], float | None]
+) -> tuple[list[E], list[float]]:
     """The episodes that have a value of a metric, and the values."""
     pairs = [(episode, metric(episode)) for episode in episodes]
     known = [(episode, float(value)) for episode, value in pairs if value is not None]
@@ -138,19 +154,20 @@ def _with_values(episodes: Sequence[Episode], metric: Metric) -> tuple[list[Epis
 RESAMPLES = 10_000  # the interval's ends then move by less than .002 from seed to seed
 
 
-def _bootstrap(episodes: Sequence[Episode], values: Sequence[float]) -> Interval:
+def _bootstrap(episodes: Sequence[Grouped], values: Sequence[float]) -> Interval:
     """The mean of the episodes' values and its interval."""
     means = _resample(episodes, values, np.random.default_rng(0))
-    return _interval(float(np.mean(values)), means)
+    return interval_of(float(np.mean(values)), means)
 
 
-def _interval(mean: float, resampled: np.ndarray) -> Interval:
+def interval_of(mean: float, resampled: np.ndarray) -> Interval:
+    """A mean and the 95 % interval of its values in resamples, (R,)."""
     low, high = np.quantile(resampled, (0.025, 0.975))
     return Interval(mean, float(low), float(high))
 
 
 def _resample(
-    episodes: Sequence[Episode], values: Sequence[float], generator: np.random.Generator
+    episodes: Sequence[Grouped], values: Sequence[float], generator: np.random.Generator
 ) -> np.ndarray:
     """Resample sessions within preferences; where preferences are a sample, resample those.
 

@@ -14,6 +14,7 @@ class PeopleEpisode:
         split: The split's name.
         session: The session's index within the split.
         salt: The session seed; 0 is the published one.
+        preference: The number of the session's user, whose preference it is, within the split.
         dishes: How many dishes there are.
         alike: How many of them end as the expert's do: like dishes in one zone, or in the sink,
             taken together.
@@ -33,6 +34,7 @@ class PeopleEpisode:
     split: str
     session: int
     salt: int
+    preference: int
     dishes: int
     alike: int
     turns: tuple[int, int]
@@ -86,27 +88,40 @@ def temporal_efficiency(episode: PeopleEpisode) -> float:
     return where(episode) * expert / max(len(episode.decisions), expert)
 
 
+def success(episode: PeopleEpisode) -> bool:
+    """Whether Where is 1 and the episode ended by itself: LeRobot's `is_success`."""
+    return where(episode) == 1.0 and episode.finished
+
+
+# What hurts a person comes first.
 PEOPLE_METRICS: dict[str, Callable[[PeopleEpisode], float | None]] = {
+    "Care": care,
     "Where": where,
     "Turn": turn,
     "Style": style,
-    "Care": care,
     "Refused": refused_decisions,
     "Left open": left_open,
     "TE": temporal_efficiency,
 }
 
 
+def failure_modes(episode: PeopleEpisode) -> dict[str, int]:
+    """How often each failure mode occurred in an episode; all 0 if nothing went wrong."""
+    return {
+        "loaded what is washed by hand": care(episode),
+        "refused decision": refused_decisions(episode),
+        "ran out of decisions": left_open(episode),
+    }
+
+
 def headline(episodes: Iterable[PeopleEpisode]) -> float:
-    """H = (Where + Turn) / 2, each its mean over the episodes that have it."""
+    """H = (Where + Turn) / 2, each its mean over the episodes that have it.
+
+    Turn counts 0 where no episode has it, as of a policy that never pulls a rack out.
+    """
     every = list(episodes)
     turns = [value for one in every if (value := turn(one)) is not None]
-    return float((np.mean([where(one) for one in every]) + np.mean(turns)) / 2)
-
-
-def rescaled_headline(h: float, floor: float, ceiling: float) -> float:
-    """(H - floor) / (ceiling - floor), clipped at neither end."""
-    return (h - floor) / (ceiling - floor)
+    return float((np.mean([where(one) for one in every]) + np.mean(turns or [0.0])) / 2)
 
 
 def _share(counted: tuple[int, int]) -> float | None:

@@ -7,15 +7,13 @@ the policy's; l and p are the
 expert's and the policy's numbers of decisions.
 """
 
-import json
 from collections.abc import Callable, Iterable
-from functools import cache
-from importlib.resources import files
 
 import numpy as np
 import textdistance
 
 from kitchen_prefs.metrics.episode import Episode
+from kitchen_prefs.metrics.references import reference_scores, rescaled
 
 
 def packing_efficiency(episode: Episode) -> float:
@@ -108,16 +106,6 @@ def category_edit_similarity_without_refused(episode: Episode) -> float:
     return _similarity(carried_out, episode.expert_kinds)
 
 
-@cache
-def reference_scores() -> dict[str, dict[str, float]]:
-    """The Score of the floor and of the ceiling on each test split.
-
-    The floor is the rule `promptless`, which acts by the posterior over all 2 x 7! preferences
-    without a prompt; the ceiling is `bayes`, which has the prompt as well.
-    """
-    return json.loads((files("kitchen_prefs.metrics") / "reference_scores.json").read_text())
-
-
 def rescaled_score(episode: Episode) -> float | None:
     """(Score - floor) / (ceiling - floor) of the episode's split, clipped at neither end.
 
@@ -126,8 +114,7 @@ def rescaled_score(episode: Episode) -> float | None:
     """
     if episode.split not in reference_scores():
         return None
-    floor, ceiling = (reference_scores()[episode.split][name] for name in ("floor", "ceiling"))
-    return (score(episode) - floor) / (ceiling - floor)
+    return rescaled(score(episode), reference_scores()[episode.split])
 
 
 # None means that an episode has no value; it is left out of means.
@@ -167,10 +154,10 @@ def failure_modes(episode: Episode) -> dict[str, int]:
     }
 
 
-def count_failure_modes(episodes: Iterable[Episode]) -> dict[str, tuple[int, int]]:
+def count_failure_modes(of_episodes: Iterable[dict[str, int]]) -> dict[str, tuple[int, int]]:
     """For each failure mode, in how many episodes it occurred and how often in all."""
     times: dict[str, list[int]] = {}
-    for episode in episodes:
-        for mode, count in failure_modes(episode).items():
+    for of_episode in of_episodes:
+        for mode, count in of_episode.items():
             times.setdefault(mode, []).append(count)
     return {mode: (sum(n > 0 for n in counts), sum(counts)) for mode, counts in times.items()}

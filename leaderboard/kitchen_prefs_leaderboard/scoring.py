@@ -15,6 +15,7 @@ from kitchen_prefs.metrics import (
     Episode,
     Interval,
     count_failure_modes,
+    failure_modes,
     mean_of_splits_all,
     summarise_all,
 )
@@ -51,7 +52,10 @@ class Entry:
     def failure_modes(self) -> dict[str, dict[str, int]]:
         """For each test split, in how many episodes each failure mode occurred."""
         return {
-            split: {mode: n for mode, (n, _) in count_failure_modes(episodes).items()}
+            split: {
+                mode: n
+                for mode, (n, _) in count_failure_modes(map(failure_modes, episodes)).items()
+            }
             for split, episodes in self.episodes.items()
         }
 

@@ -8,7 +8,11 @@ from kitchen_prefs.evaluation.policy_options import check_one_policy
 
 
 def policy_settings(
-    path: str | None, policy_type: str | None, options: Sequence[str], track: str | None
+    path: str | None,
+    policy_type: str | None,
+    options: Sequence[str],
+    track: str | None,
+    split: str = "seen",
 ) -> dict[str, Any]:
     """Find a policy's checkpoint, and the one below it if it is an adapter.
 
@@ -19,6 +23,7 @@ def policy_settings(
         policy_type: The type of a policy that needs no training.
         options: Settings of the policy to override, as in `--rule=expert`.
         track: The track of the environment, see `load_policy`.
+        split: The split whose observations a checkpoint has to fit.
 
     Raises:
         ValueError: If not exactly one of `path` and `policy_type` is given, or if a checkpoint is
@@ -33,4 +38,5 @@ def policy_settings(
         "policy_type": policy_type,
         "options": list(options),
         "track": track,
+        "split": split,
     }

@@ -102,7 +102,7 @@ def test_sinking_what_the_expert_sinks_is_no_failure():
 
 
 def test_failure_modes_are_counted_by_episodes_and_in_all():
-    counts = count_failure_modes([episode_of(), episode_of(wrong_rack=2), episode_of(wrong_rack=1)])
+    counts = count_failure_modes(failure_modes(episode_of(wrong_rack=wrong)) for wrong in (0, 2, 1))
     assert counts["wrong rack"] == (2, 3)
     assert counts["closed early"] == (0, 0)
 
