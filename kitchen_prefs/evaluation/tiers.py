@@ -114,9 +114,8 @@ class Tier:
         """
         if not self.varies and any(value != USUAL[name] for name, value in asked.items()):
             raise ValueError(
-                f"The splits of the tier {self.name!r} have the standard track and prompts of "
-                "their own; leave out --track, --prompts, --prompt, --prompt-use and "
-                "--category-accuracy."
+                f"The tier {self.name!r} has the standard track and its own prompts alone; leave "
+                "out --track, --prompts, --prompt, --prompt-use and --category-accuracy."
             )
 
 

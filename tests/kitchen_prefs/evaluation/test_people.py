@@ -4,9 +4,10 @@ import json
 
 import numpy as np
 import pytest
-from act_checkpoints import call
+from act_checkpoints import call, save_act
 from short_splits import short_people_splits
 
+from kitchen_prefs.envs.observations import STATE_SIZE
 from kitchen_prefs.envs.people_environment import DishwasherPeople
 from kitchen_prefs.evaluation.checkpoint_selection import select_checkpoint
 from kitchen_prefs.evaluation.episode_files import read_episodes
@@ -109,7 +110,7 @@ def test_splits_of_both_tiers_have_a_table_each(tmp_path):
 )
 def test_what_the_second_tier_does_not_have_is_said_before_anything_is_rolled_out(tmp_path, wrong):
     out = tmp_path / "out"
-    with pytest.raises(ValueError, match=r"tier 'people' have the standard track .* leave out"):
+    with pytest.raises(ValueError, match=r"tier 'people' has the standard track .* leave out"):
         evaluate(out, "--split=people_val", wrong)
     assert not out.exists()
 
@@ -117,6 +118,24 @@ def test_what_the_second_tier_does_not_have_is_said_before_anything_is_rolled_ou
 def test_a_misspelt_split_is_named_with_the_nearest(tmp_path):
     with pytest.raises(ValueError, match=r"no split 'people_unsen'\. Did you mean 'people_unseen'"):
         evaluate(tmp_path, "--split=people_unsen")
+
+
+def test_select_names_the_checkpoint_with_the_highest_headline(tmp_path):
+    for seed, step in enumerate(("000100", "000200")):
+        folder = tmp_path / "checkpoints" / step / "pretrained_model"
+        save_act(folder, seed, state_size=STATE_SIZE + 1)
+    assert "The best by H is" in call("select", str(tmp_path), "--split=people_val").output
+    selection = json.loads((tmp_path / "selection.json").read_text())
+    headline = {step: metrics["H"]["mean"] for step, metrics in selection["checkpoints"].items()}
+    assert len(set(headline.values())) == 2
+    best = max(headline, key=lambda step: headline[step])
+    assert selection["best"] == f"checkpoints/{best}/pretrained_model"
+
+
+def test_a_checkpoint_of_the_first_tier_does_not_fit(tmp_path):
+    path = save_act(tmp_path / "act")
+    with pytest.raises(ValueError, match=r"'observation.state' of shape \(11,\); .* has \(12,\)"):
+        call("evaluate", f"--policy.path={path}", "--split=people_val", f"--out={tmp_path / 'out'}")
 
 
 def test_checkpoints_are_not_chosen_on_a_test_split(tmp_path):
