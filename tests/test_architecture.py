@@ -109,44 +109,39 @@ DEMONSTRATIONS = {
     "__init__": "",
 }
 LEADERBOARD = {
-    "submission_format": "kitchen_prefs.envs kitchen_prefs.splits kitchen_prefs.utils",
+    "submission_format": "kitchen_prefs.envs kitchen_prefs.evaluation kitchen_prefs.utils",
     "plugin_identity": "submission_format",
-    "submission_reading": "submission_format kitchen_prefs.splits kitchen_prefs.utils",
+    "submission_reading": "submission_format kitchen_prefs.evaluation kitchen_prefs.utils",
     "replay": (
-        "submission_format submission_reading kitchen_prefs.envs kitchen_prefs.instances "
-        "kitchen_prefs.metrics kitchen_prefs.simulation"
+        "submission_format submission_reading kitchen_prefs.envs kitchen_prefs.evaluation "
+        "kitchen_prefs.instances kitchen_prefs.simulation"
     ),
     "scoring": (
         "replay submission_format submission_reading kitchen_prefs.datasets "
-        "kitchen_prefs.metrics kitchen_prefs.splits kitchen_prefs.utils"
+        "kitchen_prefs.evaluation kitchen_prefs.metrics kitchen_prefs.utils"
     ),
-    "recording_reading": (
-        "kitchen_prefs.datasets kitchen_prefs.envs kitchen_prefs.instances kitchen_prefs.metrics "
-        "kitchen_prefs.simulation kitchen_prefs.splits"
-    ),
-    "policy_runs": (
-        "submission_format kitchen_prefs.evaluation kitchen_prefs.metrics "
-        "kitchen_prefs.splits kitchen_prefs.utils"
-    ),
+    "recording_reading": ("kitchen_prefs.datasets kitchen_prefs.evaluation"),
+    "policy_runs": ("submission_format kitchen_prefs.evaluation kitchen_prefs.utils"),
     "submission_writing": (
         "plugin_identity replay submission_format kitchen_prefs.datasets kitchen_prefs.evaluation "
-        "kitchen_prefs.metrics kitchen_prefs.splits kitchen_prefs.utils"
+        "kitchen_prefs.utils"
     ),
     "verification": "submission_format kitchen_prefs.utils",
     "judgement": (
-        "scoring submission_format verification kitchen_prefs.metrics kitchen_prefs.splits"
-    ),
-    "rerun_plan": "kitchen_prefs.evaluation kitchen_prefs.simulation kitchen_prefs.splits",
-    "reruns": (
-        "judgement rerun_plan scoring verification kitchen_prefs.evaluation kitchen_prefs.metrics "
+        "scoring submission_format verification kitchen_prefs.evaluation kitchen_prefs.metrics "
         "kitchen_prefs.splits"
     ),
-    "ranking": "judgement scoring submission_format verification kitchen_prefs.metrics",
-    "score_formats": "scoring verification kitchen_prefs.metrics",
-    "hub_upload": "scoring kitchen_prefs.splits kitchen_prefs.utils",
+    "rerun_plan": "kitchen_prefs.evaluation kitchen_prefs.simulation",
+    "reruns": ("judgement rerun_plan scoring verification kitchen_prefs.evaluation"),
+    "ranking": (
+        "judgement scoring submission_format verification kitchen_prefs.evaluation "
+        "kitchen_prefs.metrics"
+    ),
+    "score_formats": "scoring verification kitchen_prefs.evaluation kitchen_prefs.metrics",
+    "hub_upload": "scoring kitchen_prefs.utils",
     "page": (
-        "judgement ranking scoring kitchen_prefs.metrics kitchen_prefs.splits kitchen_prefs.utils "
-        "kitchen_prefs.web"
+        "judgement ranking scoring kitchen_prefs.evaluation kitchen_prefs.metrics "
+        "kitchen_prefs.utils kitchen_prefs.web"
     ),
     "commands": (
         "hub_upload page policy_runs ranking recording_reading reruns score_formats scoring "

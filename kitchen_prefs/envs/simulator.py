@@ -90,6 +90,10 @@ class Simulator:
         """The instance that the expert would choose now."""
         raise NotImplementedError
 
+    def episode(self) -> Any:
+        """The facts of the episode so far, from which the tier's metrics are computed."""
+        raise NotImplementedError
+
     def expert_action(self) -> np.ndarray:
         """The action with which the expert would continue from here, (7,)."""
         row = self.observation.row_of(self.expert_instance())

@@ -24,7 +24,7 @@ from kitchen_prefs.metrics.references import (
 from kitchen_prefs.people.sessions import make_people_session
 from kitchen_prefs.people.splits import PEOPLE_DATA_VERSION, PEOPLE_SPLITS, PEOPLE_TEST_SPLITS
 from kitchen_prefs.simulation.sessions import make_session
-from kitchen_prefs.splits import DATA_VERSION, SPLITS, TEST_SPLITS
+from kitchen_prefs.splits import DATA_VERSION, SEEN_USERS, SPLITS, TEST_SPLITS
 from kitchen_prefs.utils.suggestions import suggest
 
 AnyEpisode = Episode | PeopleEpisode
@@ -45,6 +45,7 @@ class Tier:
 
     Attributes:
         name: "preferences" or "people".
+        title: The same as a heading.
         data_version: The version of its sessions.
         splits: Its splits, by their names.
         val: The split on which checkpoints are compared.
@@ -63,11 +64,14 @@ class Tier:
         ranking: That of `tables` by whose mean over the test splits entries are ranked.
         session_headlines: What each session of a split contributes to the mean of `ranking`.
         references: The headline of the floor and of the ceiling on its splits.
+        groups: What its episodes can be grouped by.
+        training_users: Those of the users of its test splits whom training shows, too.
         floor: The rule that is the floor.
         ceiling: The rule that is the ceiling.
     """
 
     name: str
+    title: str
     data_version: int
     splits: Mapping[str, Any]
     val: str
@@ -86,6 +90,8 @@ class Tier:
     ranking: str
     session_headlines: Callable[[Any], list[float]]
     references: Callable[[], References]
+    groups: tuple[str, ...]
+    training_users: tuple[int, ...]
     floor: str
     ceiling: str
 
@@ -121,6 +127,7 @@ class Tier:
 
 PREFERENCES = Tier(
     name="preferences",
+    title="First tier: preferences",
     data_version=DATA_VERSION,
     splits=SPLITS,
     val="val",
@@ -139,11 +146,14 @@ PREFERENCES = Tier(
     ranking="Score",
     session_headlines=lambda episodes: list(map(metrics.score, episodes)),
     references=reference_scores,
+    groups=("preference", "count"),
+    training_users=SEEN_USERS,
     floor="promptless",
     ceiling="bayes",
 )
 PEOPLE = Tier(
     name="people",
+    title="Second tier: people",
     data_version=PEOPLE_DATA_VERSION,
     splits=PEOPLE_SPLITS,
     val="people_val",
@@ -165,6 +175,8 @@ PEOPLE = Tier(
     ranking="Rescaled",
     session_headlines=people_intervals.session_headlines,
     references=people_reference_scores,
+    groups=(),
+    training_users=(),
     floor="people_promptless",
     ceiling="people_bayes",
 )

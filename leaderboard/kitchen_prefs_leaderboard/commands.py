@@ -12,6 +12,7 @@ import typer
 from rich.console import Console
 
 from kitchen_prefs.evaluation.policy_options import ANY_SETTING, PolicyPath, PolicyType
+from kitchen_prefs.evaluation.tiers import TIERS
 from kitchen_prefs.utils.files import at_work_alone, make_folder
 from kitchen_prefs_leaderboard.submission_format import UNSPECIFIED
 
@@ -39,6 +40,13 @@ class Form(StrEnum):
     CSV = "csv"
 
 
+class Tiers(StrEnum):
+    """The tiers whose test splits a submission covers."""
+
+    PREFERENCES = "preferences"
+    PEOPLE = "people"
+
+
 class Groups(StrEnum):
     """What scores are broken down by."""
 
@@ -52,6 +60,9 @@ def submit(
     name: Annotated[str, typer.Option(help="The name of the entry.")],
     track: Annotated[str, typer.Option(help="standard, privileged, language or open.")],
     out: Annotated[Path, typer.Option(help="The submission's folder.")],
+    tier: Annotated[list[Tiers], typer.Option(help="What it covers; several.")] = [  # noqa: B006
+        Tiers.PREFERENCES
+    ],
     path: PolicyPath = None,
     policy_type: PolicyType = None,
     author: Annotated[list[str], typer.Option(help="Who submits; several.")] = ["anonymous"],  # noqa: B006
@@ -71,6 +82,8 @@ def submit(
 ) -> None:
     """Roll a policy out on the test splits and write its actions as a submission.
 
+    The test splits are those of the first tier, unless --tier=people asks for those of the second
+    or both --tier=preferences --tier=people for those of both.
     The episodes are kept in OUT-episodes, so a command that was killed resumes.
     Any other --policy.SETTING=VALUE overrides a setting of the policy.
     With --from=DIR the actions are those that `lerobot-eval --env.type=kitchen_prefs
@@ -85,8 +98,10 @@ def submit(
     from kitchen_prefs_leaderboard.policy_runs import load_policy_run
 
     submission_writing.check_replaceable(out)
-    policy = load_policy_run(path, policy_type, context.args, track)
+    tiers = [one for name, one in TIERS.items() if name in tier]
+    policy = load_policy_run(path, policy_type, context.args, track, tiers)
     submission = submission_writing.describe(
+        tiers,
         name=name,
         authors=author,
         link=link,
@@ -99,7 +114,7 @@ def submit(
         if recordings:
             from kitchen_prefs_leaderboard.recording_reading import read_recordings
 
-            episodes = read_recordings(recordings)
+            episodes = read_recordings(recordings, policy.splits)
         else:
             episodes = policy.roll_out(out.with_name(f"{out.name}-episodes"), salt=0, jobs=jobs)
         submission_writing.write_submission(submission, episodes, out)
@@ -186,16 +201,20 @@ def verify(
 
     warn_without_sandbox()
     submission = read_known(folder)
-    settings = settings_on_track(path, policy_type, context.args, submission.description.track)
-    rerunner = Rerunner(settings, out / submission.digest[:12], jobs, plugins)
-    with at_work_alone(rerunner.folder):
-        verification.check_policy(submission.description, policy_of(rerunner.described, plugins))
-        (entry,) = replay_submissions([submission], jobs)
-        found = rerun_submission(entry, rerunner, salt, by)
-    file = verification.write_verification(found, verifications)
-    console.print(score_formats.to_comparison(found))
-    typer.echo(f"{score_formats.to_verdict(found)}\nThe record is {file}.")
-    if not found.confirmed:
+    about, confirmed = submission.description, True
+    for tier in about.tiers:
+        settings = settings_on_track(path, policy_type, context.args, about.track, tier)
+        kept = out / submission.digest(tier)[:12]
+        rerunner = Rerunner(settings, kept, jobs, plugins, tier=tier)
+        with at_work_alone(kept):
+            verification.check_policy(about, policy_of(rerunner.described, plugins))
+            (entry,) = replay_submissions([submission], jobs, tier)
+            found = rerun_submission(entry, rerunner, salt, by)
+        file = verification.write_verification(found, verifications)
+        console.print(score_formats.to_comparison(found, tier))
+        typer.echo(f"{score_formats.to_verdict(found)}\nThe record is {file}.")
+        confirmed &= found.confirmed
+    if not confirmed:
         raise typer.Exit(1)
 
 
@@ -215,13 +234,13 @@ def page(
         raise ValueError(f"{out} is a folder; give --out a file in it.")
     make_folder(out.parent, "--out")
     from kitchen_prefs_leaderboard.page.building import write_page
-    from kitchen_prefs_leaderboard.ranking import rank
+    from kitchen_prefs_leaderboard.ranking import rank_tiers
     from kitchen_prefs_leaderboard.verification import read_verifications
 
     if verifications != KEPT and not verifications.is_dir():
         raise ValueError(f"There is no folder {verifications}; give another --verifications.")
     verified = read_verifications(verifications)
-    write_page(rank(_scored(folders, jobs), verified), out)
+    write_page(rank_tiers(_scored(folders, jobs), verified), out)
     typer.echo(f"The page is {out}; a browser opens it without a server.")
 
 

@@ -12,7 +12,6 @@ from pathlib import Path
 
 from huggingface_hub import HfApi
 
-from kitchen_prefs.splits import TEST_SPLITS
 from kitchen_prefs.utils.hub import check_repo_id, commit, hub_errors
 from kitchen_prefs_leaderboard.scoring import read_known
 
@@ -58,7 +57,7 @@ def push_submission(folder: Path, repo_id: str, name: str) -> str:
             "digits, '_', '-' and '.'."
         )
     submission = read_known(folder)
-    for split in TEST_SPLITS:
+    for split in submission.splits:
         submission.lines(split)  # raises if they are malformed
     files = {f"{name}/{file}": content for file, content in submission.contents.items()}
     about = submission.description

@@ -3,24 +3,27 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from math import hypot, sqrt
+from typing import Any
 
 import numpy as np
 
-from kitchen_prefs.metrics import Episode, Interval, mean_of_splits, score
-from kitchen_prefs.splits import HELD_OUT_USERS, SEEN_USERS, TEST_SPLITS
+from kitchen_prefs.evaluation.tiers import AnyEpisode, tier_of
+from kitchen_prefs.metrics import Interval, mean_of_splits, score
+from kitchen_prefs.splits import HELD_OUT_USERS
 from kitchen_prefs_leaderboard.scoring import MEAN, Entry
 from kitchen_prefs_leaderboard.submission_format import installed_packages
 from kitchen_prefs_leaderboard.verification import PROCEDURE, ScoreInterval, Verification
 
 ALIKE = 0.95  # of the episodes of a deterministic policy: other processors round otherwise
 SIGNIFICANT = 1.96  # standard errors, for 95 %
-# Standard errors by which Score on fresh sessions, or alone, must differ to speak against a
+# Standard errors by which the headline on fresh sessions, or alone, must differ to speak against a
 # submission: with some comparisons for each of a board's rows, 1.96 would refuse one honest row in
 # twenty.
 SUSPICIOUS = 3.0
 FIVE, TWO_HUNDRED = "unseen_preferences", "many_preferences"  # splits of so many other users
 
-Episodes = Mapping[str, Sequence[Episode]]  # of each test split
+Episodes = Mapping[str, Sequence[Any]]  # of each test split of one tier
+Headlines = Mapping[str, Sequence[float]]  # of each test split, what each session contributes
 
 
 @dataclass(frozen=True)
@@ -48,7 +51,7 @@ class Reruns:
 
     @property
     def shown(self) -> Episodes:
-        """The run whose Score is shown and ranked: the one that no batch can have helped."""
+        """The run whose headline is shown and ranked: the one that no batch can have helped."""
         return self.singly or self.published
 
 
@@ -73,16 +76,16 @@ def compare(entry: Entry, reruns: Reruns, *, salt: int, by: str, sandbox: bool) 
 
     It repeats if at least 95 % of the episodes are alike. If they are not, but the policy repeats
     itself from run to run, the submission is another policy's. If it does not repeat itself either,
-    the submission must lie within what the policy's own spread allows: the difference in Score
-    within 1.96 standard errors, which come from the runs and never from the submission.
+    the submission must lie within what the policy's own spread allows: the difference in the
+    headline within 1.96 standard errors, which come from the runs and never from the submission.
 
     An episode is independent of others if, rolled out in a batch of its own, it goes as in a batch
-    with others; of a policy that does not repeat itself, Score with each session alone must lie
-    within three such standard errors of Score in batches.
+    with others; of a policy that does not repeat itself, the headline with each session alone must
+    lie within three such standard errors of the headline in batches.
 
-    It generalises if on fresh sessions its Score is not lower than in the re-run by more than three
-    standard errors: on the sessions of the training users, and on those of all others, whose fresh
-    users are other users.
+    It generalises if on fresh sessions its headline is not lower than in the re-run by more than
+    three standard errors: on the sessions of the training users, and on those of all others, whose
+    fresh users are other users.
 
     Args:
         entry: The submission, replayed.
@@ -101,7 +104,7 @@ def compare(entry: Entry, reruns: Reruns, *, salt: int, by: str, sandbox: bool) 
         runs = [*reruns.batched, reruns.singly]
         repeats = _likely(entry.episodes, runs, SIGNIFICANT)
         independent = _likely(reruns.singly, reruns.batched, SUSPICIOUS)
-    scores = _mean_scores([reruns.shown])
+    scores = session_headlines([reruns.shown])
     return Verification(
         procedure=PROCEDURE,
         digest=entry.digest,
@@ -113,9 +116,9 @@ def compare(entry: Entry, reruns: Reruns, *, salt: int, by: str, sandbox: bool) 
         same=same,
         itself=itself,
         alone=went_alone,
-        replayed=_score_interval(entry.metrics[MEAN]["Score"]),
-        rerun=_score_interval(_interval_of(reruns.shown, scores)),
-        fresh=_score_interval(mean_of_splits(list(reruns.fresh.values()), score)),
+        replayed=_headline_of(entry.episodes),
+        rerun=_headline_of(reruns.shown),
+        fresh=_headline_of(reruns.fresh),
         scores={split: [round(value, 4) for value in scores[split]] for split in scores},
         repeats=repeats,
         independent=independent,
@@ -124,49 +127,53 @@ def compare(entry: Entry, reruns: Reruns, *, salt: int, by: str, sandbox: bool) 
     )
 
 
-def rerun_score(entry: Entry, verification: Verification, split: str) -> Interval:
-    """Score of the re-run on a split, or its mean over them: what is shown and ranked."""
+def rerun_headline(entry: Entry, verification: Verification, split: str) -> Interval:
+    """The headline of the re-run on a split, or its mean over them: what is shown and ranked."""
     assert verification.scores is not None
-    wanted = TEST_SPLITS if split == MEAN else (split,)
+    wanted = entry.tier.test_splits if split == MEAN else (split,)
     return _interval_of({name: entry.episodes[name] for name in wanted}, verification.scores)
 
 
-def _mean_scores(reruns: Sequence[Episodes]) -> dict[str, list[float]]:
-    """Score in each session, its mean over the runs."""
+def session_headlines(runs: Sequence[Episodes]) -> dict[str, list[float]]:
+    """What each session of each split contributes to the headline, its mean over the runs."""
     return {
-        split: np.mean([[score(e) for e in run[split]] for run in reruns], axis=0).tolist()
-        for split in reruns[0]
+        split: np.mean([tier_of(split).session_headlines(run[split]) for run in runs], 0).tolist()
+        for split in runs[0]
     }
 
 
-def _interval_of(episodes: Episodes, scores: Mapping[str, Sequence[float]]) -> Interval:
-    """The mean of given scores over the sessions of some episodes."""
-    return mean_of_splits(list(episodes.values()), in_its_session(episodes, scores))
+def _headline_of(run: Episodes) -> ScoreInterval:
+    return ScoreInterval(**asdict(_interval_of(run, session_headlines([run])).rounded()))
 
 
-def in_its_session(
-    episodes: Episodes, scores: Mapping[str, Sequence[float]]
-) -> Callable[[Episode], float]:
-    """Scores of the sessions of some episodes, as a metric of any episode in these sessions."""
+def _interval_of(episodes: Episodes, headlines: Headlines) -> Interval:
+    """The mean of given headlines over the sessions of some episodes."""
+    return mean_of_splits(list(episodes.values()), in_its_session(episodes, headlines))
+
+
+def in_its_session(episodes: Episodes, headlines: Headlines) -> Callable[[AnyEpisode], float]:
+    """Headlines in the sessions of some episodes, as a metric of any episode in these sessions."""
     of_session = {
         (e.split, e.session): value
         for split, of_split in episodes.items()
-        for e, value in zip(of_split, scores[split], strict=True)
+        for e, value in zip(of_split, headlines[split], strict=True)
     }
     return lambda e: of_session[e.split, e.session]
 
 
 def _as_good_on_fresh(reruns: Reruns, *, known: bool) -> bool:
-    """Whether Score on fresh sessions is not significantly lower than on the published ones.
+    """Whether the headline on fresh sessions is not significantly lower than on the published ones.
 
     Args:
         reruns: The policy's episodes, of which those that were mixed into batches are compared.
         known: Compare the sessions of the training users, else those of all others.
     """
     ours, theirs = _of_users(reruns.published, known), _of_users(reruns.fresh, known)
-    scores = _mean_scores(reruns.batched)
-    before = mean_of_splits(ours, in_its_session(reruns.published, scores))
-    after = mean_of_splits(theirs, score)
+    if not ours:
+        return True
+    on_fresh, published = session_headlines([reruns.fresh]), session_headlines(reruns.batched)
+    before = mean_of_splits(ours, in_its_session(reruns.published, published))
+    after = mean_of_splits(theirs, in_its_session(reruns.fresh, on_fresh))
     sessions = hypot(before.mean - before.low, after.high - after.mean) / SIGNIFICANT
     users = 0.0 if known else _error_of_other_users(reruns.published, reruns.fresh)
     return before.mean - after.mean <= SUSPICIOUS * hypot(sessions, users)
@@ -177,7 +184,10 @@ def _error_of_other_users(published: Episodes, fresh: Episodes) -> float:
 
     The bootstrap resamples the sessions of the five held-out users, who were the same, but fresh
     sessions are of five others. How much users differ is known from the two hundred others.
+    The splits of the second tier have a user a session, whom the bootstrap resamples.
     """
+    if FIVE not in published:
+        return 0.0
     if {e.preference for e in fresh[FIVE]} == {e.preference for e in published[FIVE]}:
         return 0.0
     between = float(np.std([score(e) for e in fresh[TWO_HUNDRED]], ddof=1))
@@ -186,27 +196,23 @@ def _error_of_other_users(published: Episodes, fresh: Episodes) -> float:
     return share * between * sqrt(2 / len(HELD_OUT_USERS))
 
 
-def _of_users(episodes: Episodes, known: bool) -> list[list[Episode]]:
+def _of_users(episodes: Episodes, known: bool) -> list[list[Any]]:
     """Each split's episodes of the training users, or of all others, where there are some."""
     of_splits = [
-        [e for e in of_split if (e.preference in SEEN_USERS) == known]
-        for of_split in episodes.values()
+        [e for e in of_split if (e.preference in tier_of(split).training_users) == known]
+        for split, of_split in episodes.items()
     ]
     return [of_split for of_split in of_splits if of_split]
 
 
 def _likely(run: Episodes, others: Sequence[Episodes], limit: float) -> bool:
-    """Whether a run's Score is one that other runs make likely, within `limit` standard errors."""
+    """Whether other runs make a run's headline likely, within `limit` standard errors."""
     difference, variance = 0.0, 0.0
-    for split in TEST_SPLITS:
-        known = np.array([[score(e) for e in other[split]] for other in others])  # (R, S)
-        judged = np.array([score(e) for e in run[split]])  # (S,)
-        difference += (judged - known.mean(0)).mean() / len(TEST_SPLITS)
+    judged, known = session_headlines([run]), [session_headlines([other]) for other in others]
+    for split in run:
+        of_others = np.array([other[split] for other in known])  # (R, S)
+        difference += (np.array(judged[split]) - of_others.mean(0)).mean() / len(run)
         # One run against the mean of R runs: each session adds its variance times 1 + 1/R.
-        spread = known.var(0, ddof=1).sum() / known.shape[1] ** 2
-        variance += (1 + 1 / len(known)) * spread / len(TEST_SPLITS) ** 2
+        spread = of_others.var(0, ddof=1).sum() / of_others.shape[1] ** 2
+        variance += (1 + 1 / len(others)) * spread / len(run) ** 2
     return bool(abs(difference) <= limit * sqrt(variance))
-
-
-def _score_interval(interval: Interval) -> ScoreInterval:
-    return ScoreInterval(**asdict(interval.rounded()))

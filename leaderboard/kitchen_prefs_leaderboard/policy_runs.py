@@ -10,8 +10,7 @@ from kitchen_prefs.evaluation.episode_files import read_episodes, read_header
 from kitchen_prefs.evaluation.isolation.policy_settings import policy_settings
 from kitchen_prefs.evaluation.policy_loading import LoadedPolicy, load_policy
 from kitchen_prefs.evaluation.policy_options import settings_of
-from kitchen_prefs.metrics import Episode
-from kitchen_prefs.splits import TEST_SPLITS, get_split
+from kitchen_prefs.evaluation.tiers import AnyEpisode, Tier, tier_of
 from kitchen_prefs.utils.processes import run_module
 from kitchen_prefs.utils.suggestions import suggest
 from kitchen_prefs_leaderboard.submission_format import TRACKS
@@ -24,13 +23,15 @@ class PolicyRun:
     Attributes:
         loaded_policy: The policy.
         options: The options of `kitchen-prefs evaluate` that load it.
+        splits: What it is rolled out on.
     """
 
     loaded_policy: LoadedPolicy
     options: tuple[str, ...]
+    splits: tuple[str, ...]
 
-    def roll_out(self, folder: Path, salt: int, jobs: int) -> dict[str, list[Episode]]:
-        """Roll out on the test splits; episodes that are in the folder are reused.
+    def roll_out(self, folder: Path, salt: int, jobs: int) -> dict[str, list[AnyEpisode]]:
+        """Roll out on the splits; episodes that are in the folder are reused.
 
         Args:
             folder: The folder of the episodes.
@@ -53,11 +54,11 @@ class PolicyRun:
             run_module("kitchen_prefs.cli", arguments, folder / f"{splits[0]}.log", "Rolling out")
 
         with ThreadPoolExecutor(jobs) as pool:
-            list(pool.map(evaluate, shares(jobs)))
+            list(pool.map(evaluate, shares(self.splits, jobs)))
         self._check_episodes(folder)
         return {
             split: sorted(read_episodes(folder / f"{split}.jsonl"), key=lambda one: one.session)
-            for split in TEST_SPLITS
+            for split in self.splits
         }
 
     def _check_episodes(self, folder: Path) -> None:
@@ -67,20 +68,24 @@ class PolicyRun:
                 raise ValueError(f"{folder} holds episodes of another policy; {advice}")
 
 
-def shares(jobs: int) -> list[list[str]]:
-    """The test splits, distributed so that each process has about equally many sessions.
+def shares(splits: Sequence[str], jobs: int) -> list[list[str]]:
+    """Splits, distributed so that each process has about equally many sessions.
 
-    A process for each split would load LeRobot six times, which takes longer than some splits.
+    A process for each split would load LeRobot as often, which takes longer than some splits.
     """
-    shared: list[list[str]] = [[] for _ in range(min(jobs, len(TEST_SPLITS)))]
-    sessions = {split: get_split(split).sessions for split in TEST_SPLITS}
-    for split in sorted(TEST_SPLITS, key=lambda split: -sessions[split]):
+    shared: list[list[str]] = [[] for _ in range(min(jobs, len(splits)))]
+    sessions = {split: tier_of(split).sessions(split) for split in splits}
+    for split in sorted(splits, key=lambda split: -sessions[split]):
         min(shared, key=lambda of_process: sum(sessions[s] for s in of_process)).append(split)
     return shared
 
 
 def load_policy_run(
-    path: str | None, policy_type: str | None, settings: Sequence[str], track: str
+    path: str | None,
+    policy_type: str | None,
+    settings: Sequence[str],
+    track: str,
+    tiers: Sequence[Tier],
 ) -> PolicyRun:
     """Load one's own policy for a track of the leaderboard.
 
@@ -89,17 +94,22 @@ def load_policy_run(
         policy_type: The type of a policy that needs no training.
         settings: Settings of the policy to override, as in `--policy.rule=symbolic`.
         track: What the policy observes; on the open track, the track of its own settings.
+        tiers: The tiers on whose test splits it is rolled out.
 
     Raises:
-        ValueError: If there is no such track, or if it cannot be loaded, see `load_policy`.
+        ValueError: If there is no such track, or if it cannot be loaded for a tier, see
+            `load_policy`.
     """
-    loaded_policy = load_policy(**settings_on_track(path, policy_type, settings, track))
+    for tier in tiers:
+        loaded_policy = load_policy(**settings_on_track(path, policy_type, settings, track, tier))
+        tier.check(track=loaded_policy.track)
+    splits = tuple(split for tier in tiers for split in tier.test_splits)
     policy = f"--policy.path={path}" if path else f"--policy.type={policy_type}"
-    return PolicyRun(loaded_policy, (policy, *settings, f"--track={loaded_policy.track}"))
+    return PolicyRun(loaded_policy, (policy, *settings, f"--track={loaded_policy.track}"), splits)
 
 
 def settings_on_track(
-    path: str | None, policy_type: str | None, settings: Sequence[str], track: str
+    path: str | None, policy_type: str | None, settings: Sequence[str], track: str, tier: Tier
 ) -> dict[str, Any]:
     """The arguments of `load_policy` that load a policy for a track of the leaderboard.
 
@@ -108,6 +118,7 @@ def settings_on_track(
         policy_type: The type of a policy that needs no training.
         settings: Settings of the policy to override, as in `--policy.rule=symbolic`.
         track: What the policy observes; on the open track, the track of its own settings.
+        tier: The tier whose observations a checkpoint has to fit.
 
     Raises:
         ValueError: If there is no such track or checkpoint, or an argument is no setting.
@@ -115,4 +126,5 @@ def settings_on_track(
     if track not in TRACKS:
         raise ValueError(f"There is no track {track!r}. {suggest(track, TRACKS)}")
     options = settings_of(settings)
-    return policy_settings(path, policy_type, options, None if track == "open" else track)
+    asked_for = None if track == "open" else track
+    return policy_settings(path, policy_type, options, asked_for, tier.val)

@@ -1,10 +1,11 @@
-"""The order of the entries: by Score, with ties where the difference is not significant."""
+"""The order of the entries: by the headline, with ties where they do not differ significantly."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
-from kitchen_prefs.metrics import Episode, Interval, mean_of_splits, score
-from kitchen_prefs_leaderboard.judgement import in_its_session
+from kitchen_prefs.evaluation.tiers import TIERS, AnyEpisode
+from kitchen_prefs.metrics import Interval, mean_of_splits
+from kitchen_prefs_leaderboard.judgement import in_its_session, session_headlines
 from kitchen_prefs_leaderboard.scoring import MEAN, Entry
 from kitchen_prefs_leaderboard.submission_format import TRACKS
 from kitchen_prefs_leaderboard.verification import Verification
@@ -27,17 +28,25 @@ class Row:
     tied: bool = False
 
 
+def rank_tiers(
+    entries: Sequence[Entry], verified: dict[str, Verification]
+) -> dict[str, dict[str, list[Row]]]:
+    """The rows of each track of each tier that has entries, see `rank`."""
+    of_tiers = {name: [e for e in entries if e.tier is tier] for name, tier in TIERS.items()}
+    return {name: rank(of_tier, verified) for name, of_tier in of_tiers.items() if of_tier}
+
+
 def rank(entries: Sequence[Entry], verified: dict[str, Verification]) -> dict[str, list[Row]]:
     """The rows of each track, the ranked ones first.
 
     Args:
-        entries: Entries of one data version.
+        entries: Entries of one tier.
         verified: Re-runs that confirm an entry, by its digest.
     """
     tables = {}
     for track in TRACKS:
         rows = [Row(e, verified.get(e.digest)) for e in entries if e.submission.track == track]
-        rows.sort(key=lambda row: (-_ranking_score(row), row.entry.submission.name))
+        rows.sort(key=lambda row: (-_ranking_headline(row), row.entry.submission.name))
         if rows:
             tables[track] = [
                 *_ranked([row for row in rows if row.verification]),
@@ -46,9 +55,9 @@ def rank(entries: Sequence[Entry], verified: dict[str, Verification]) -> dict[st
     return tables
 
 
-def _ranking_score(row: Row) -> float:
-    """The Score that counts: the re-run's, and for a record of an earlier procedure the lower."""
-    replayed = row.entry.metrics[MEAN]["Score"].mean
+def _ranking_headline(row: Row) -> float:
+    """The one that counts: the re-run's, and for a record of an earlier procedure the lower."""
+    replayed = row.entry.metrics[MEAN][row.entry.tier.ranking].mean
     if row.verification is None:
         return replayed
     if row.verification.scores is None:
@@ -76,17 +85,16 @@ def _ranked(rows: Sequence[Row]) -> list[Row]:
 
 
 def lead(first: Row, second: Row) -> Interval:
-    """The difference in Score between two rows on the same sessions, of the re-runs if recorded.
+    """The difference in the headline between two rows, of the re-runs if recorded.
 
     The paired bootstrap: the sessions' differences are resampled.
     """
-    ours, theirs = _score_that_counts(first), _score_that_counts(second)
+    ours, theirs = _headline_that_counts(first), _headline_that_counts(second)
     return mean_of_splits(list(first.entry.episodes.values()), lambda e: ours(e) - theirs(e))
 
 
-def _score_that_counts(row: Row) -> Callable[[Episode], float]:
-    """A row's Score in the session of an episode, of any row's."""
+def _headline_that_counts(row: Row) -> Callable[[AnyEpisode], float]:
+    """What a session contributes to a row's headline, of an episode in it of any row's."""
     episodes = row.entry.episodes
     recorded = row.verification.scores if row.verification else None
-    replayed = {split: [score(e) for e in of_split] for split, of_split in episodes.items()}
-    return in_its_session(episodes, recorded or replayed)
+    return in_its_session(episodes, recorded or session_headlines([episodes]))

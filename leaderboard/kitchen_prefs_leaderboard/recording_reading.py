@@ -10,7 +10,7 @@ A recording does not name its session; the first instance set does, because no t
 split begin alike.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -18,22 +18,19 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 from tqdm import tqdm
 
-from kitchen_prefs import instances
 from kitchen_prefs.datasets.columns import flat_numbers
-from kitchen_prefs.envs.episode_simulator import EpisodeSimulator
-from kitchen_prefs.metrics import Episode
-from kitchen_prefs.simulation.sessions import make_session
-from kitchen_prefs.splits import TEST_SPLITS, get_split
+from kitchen_prefs.evaluation.tiers import AnyEpisode, tier_of
 
 COLUMNS = ["instances", "action", "episode_index"]
 ADVICE = "run lerobot-eval on the whole split, as docs/lerobot_tools.md shows."
 
 
-def read_recordings(folder: Path) -> dict[str, list[Episode]]:
-    """Read the recordings of all test splits and replay their actions.
+def read_recordings(folder: Path, splits: Sequence[str]) -> dict[str, list[AnyEpisode]]:
+    """Read the recordings of test splits and replay their actions.
 
     Args:
-        folder: The folder with an output folder of `lerobot-eval` for each test split.
+        folder: The folder with an output folder of `lerobot-eval` for each of the splits.
+        splits: The splits.
 
     Returns:
         The episodes of each split, in the order of the sessions.
@@ -42,35 +39,41 @@ def read_recordings(folder: Path) -> dict[str, list[Episode]]:
         ValueError: If a split, a session or the end of an episode is missing, or a recording is
             damaged or belongs to no session.
     """
-    for split in TEST_SPLITS:
+    for split in splits:
         if not (folder / split / "recordings").is_dir():
             raise ValueError(f"{folder / split} has no recordings; {ADVICE}")
-    return {split: _episodes(split, folder / split / "recordings") for split in TEST_SPLITS}
+    return {split: _episodes(split, folder / split / "recordings") for split in splits}
 
 
-def _episodes(split: str, recordings: Path) -> list[Episode]:
+def _episodes(split: str, recordings: Path) -> list[AnyEpisode]:
     session_of = _sessions_by_first_set(split)
-    found: dict[int, Episode] = {}
+    found: dict[int, AnyEpisode] = {}
     for first, actions in _recorded(recordings):
-        session = session_of.get(first.tobytes())
+        session = session_of.get(_key(first))
         if session is None:
             raise ValueError(f"{recordings} holds an episode of no session of {split}.")
         if session not in found:
             found[session] = _replayed(split, session, actions)
-    missing = sorted(set(range(get_split(split).sessions)) - found.keys())
+    missing = sorted(set(range(tier_of(split).sessions(split))) - found.keys())
     if missing:
         raise ValueError(f"{recordings} lacks session {missing[0]} of {split}; {ADVICE}")
     return [found[session] for session in sorted(found)]
 
 
 def _sessions_by_first_set(split: str) -> dict[bytes, int]:
-    sessions = tqdm(range(get_split(split).sessions), f"Sessions of {split}", leave=False)
-    starts = (EpisodeSimulator(make_session(split, i)).observation.rows for i in sessions)
-    return {instances.pack(rows).tobytes(): i for i, rows in enumerate(starts)}
+    tier = tier_of(split)
+    sessions = tqdm(range(tier.sessions(split)), f"Sessions of {split}", leave=False)
+    starts = (tier.make_simulator(split, i, 0).observation.rows for i in sessions)
+    return {_key(rows): i for i, rows in enumerate(starts)}
+
+
+def _key(first: np.ndarray) -> bytes:
+    """What tells an episode's first instance set from others, padded or not."""
+    return np.trim_zeros(first.ravel(), "b").tobytes()
 
 
 def _recorded(recordings: Path) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-    """The first instance set, (72 * 13,), and the actions, (T, 7), of each recorded episode."""
+    """The first instance set, (N * D,), and the actions, (T, 7), of each recorded episode."""
     for file in sorted(recordings.rglob("data/*/*.parquet")):
         try:
             table = pq.read_table(file, columns=COLUMNS)
@@ -84,8 +87,8 @@ def _recorded(recordings: Path) -> Iterator[tuple[np.ndarray, np.ndarray]]:
             yield sets[frames][0], actions[frames]
 
 
-def _replayed(split: str, session: int, actions: np.ndarray) -> Episode:
-    simulator = EpisodeSimulator(make_session(split, session))
+def _replayed(split: str, session: int, actions: np.ndarray) -> AnyEpisode:
+    simulator = tier_of(split).make_simulator(split, session, 0)
     for action in actions:
         if simulator.terminated or simulator.truncated:
             raise ValueError(

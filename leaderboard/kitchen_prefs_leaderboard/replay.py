@@ -3,15 +3,16 @@
 from collections.abc import Sequence
 
 from kitchen_prefs import instances
-from kitchen_prefs.envs.episode_simulator import EpisodeSimulator
-from kitchen_prefs.metrics import Episode
+from kitchen_prefs.envs.simulator import Simulator
+from kitchen_prefs.evaluation.tiers import AnyEpisode, tier_of
 from kitchen_prefs.simulation.counter_layout import POSE_DECIMALS
-from kitchen_prefs.simulation.sessions import make_session
 from kitchen_prefs_leaderboard.submission_format import ACTIONS, FARTHEST, Line
 from kitchen_prefs_leaderboard.submission_reading import SubmissionFiles
 
+PUBLISHED = 0  # the session seed (salt) of the published sessions
 
-def replay_split(submission: SubmissionFiles, split: str) -> list[Episode]:
+
+def replay_split(submission: SubmissionFiles, split: str) -> list[AnyEpisode]:
     """Replay a submission's episodes of a split.
 
     Raises:
@@ -25,7 +26,7 @@ def replay_split(submission: SubmissionFiles, split: str) -> list[Episode]:
     ]
 
 
-def replay(split: str, line: Line, where: str) -> Episode:
+def replay(split: str, line: Line, where: str) -> AnyEpisode:
     """Replay one episode.
 
     Args:
@@ -37,7 +38,7 @@ def replay(split: str, line: Line, where: str) -> Episode:
         ValueError: If the first or the last state is not the one that the line names, or if the
             actions end too early or too late.
     """
-    simulator = EpisodeSimulator(make_session(split, line.session))
+    simulator = tier_of(split).make_simulator(split, line.session, PUBLISHED)
     if simulator.digest() != line.first:
         raise ValueError(
             f"{where}: session {line.session} of {split} begins in another state than this."
@@ -53,7 +54,7 @@ def replay(split: str, line: Line, where: str) -> Episode:
     return simulator.episode()
 
 
-def write_line(episode: Episode) -> Line:
+def write_line(episode: AnyEpisode) -> Line:
     """An episode as a line of a submission.
 
     Actions are rounded. One that would then choose another instance, or that lies too far away,
@@ -62,7 +63,8 @@ def write_line(episode: Episode) -> Line:
     Args:
         episode: An episode of a published session.
     """
-    simulator = EpisodeSimulator(make_session(episode.split, episode.session))
+    make_simulator = tier_of(episode.split).make_simulator
+    simulator = make_simulator(episode.split, episode.session, PUBLISHED)
     first = simulator.digest()
     actions: list[Sequence[float]] = []
     for action, instance in zip(episode.actions, episode.decisions, strict=True):
@@ -76,9 +78,7 @@ def write_line(episode: Episode) -> Line:
     )
 
 
-def _written(
-    action: Sequence[float], instance: int, simulator: EpisodeSimulator
-) -> Sequence[float]:
+def _written(action: Sequence[float], instance: int, simulator: Simulator) -> Sequence[float]:
     """An action as it is written, which chooses the instance that the action chose."""
     rounded = [round(value, POSE_DECIMALS) for value in action]
     near = all(abs(value) <= FARTHEST for value in rounded)

@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 
 from kitchen_prefs.evaluation.rollouts import BATCH_SIZE
+from kitchen_prefs.evaluation.tiers import tier_of
 from kitchen_prefs.simulation.sessions import FRESH_USERS, PUBLISHED_USERS
-from kitchen_prefs.splits import TEST_SPLITS, get_split
 
 ALONE = 2  # fresh sessions of each split that are also rolled out in a batch of their own
 LABELLED_TRACKS = ("privileged", "open")  # there a preference may have to be one of the twelve
@@ -18,7 +18,7 @@ MOST_SALT = 2**53  # the page's JavaScript holds every integer below
 
 @dataclass(frozen=True)
 class Run:
-    """One roll-out of the test splits.
+    """One roll-out of the test splits of a tier.
 
     Attributes:
         name: The folder of its episodes.
@@ -34,10 +34,11 @@ class Run:
 
     def sessions(self, split: str) -> Sequence[int]:
         """Its sessions of a split."""
-        everything = range(get_split(split).sessions)
+        tier = tier_of(split)
+        everything = range(tier.sessions(split))
         if not self.few:
             return everything
-        generator = np.random.default_rng([self.salt, TEST_SPLITS.index(split)])
+        generator = np.random.default_rng([self.salt, tier.test_splits.index(split)])
         return sorted(generator.choice(everything, ALONE, replace=False).tolist())
 
 

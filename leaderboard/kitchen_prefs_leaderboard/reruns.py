@@ -22,21 +22,20 @@ from kitchen_prefs.evaluation.evaluator import Evaluator
 from kitchen_prefs.evaluation.isolation.isolated_policy import IsolatedPolicy, Limits
 from kitchen_prefs.evaluation.isolation.sandbox import has_sandbox
 from kitchen_prefs.evaluation.rollouts import roll_out
-from kitchen_prefs.metrics import Episode
-from kitchen_prefs.splits import TEST_SPLITS
+from kitchen_prefs.evaluation.tiers import PREFERENCES, AnyEpisode, Tier
 from kitchen_prefs_leaderboard.judgement import Reruns, compare, needs_more_runs
 from kitchen_prefs_leaderboard.rerun_plan import Run, fresh_run
 from kitchen_prefs_leaderboard.scoring import Entry
 from kitchen_prefs_leaderboard.verification import Verification
 
-Episodes = dict[str, list[Episode]]  # of each test split, in the order of the sessions
+Episodes = dict[str, list[AnyEpisode]]  # of each test split, in the order of the sessions
 Batch = tuple["Run", str, tuple[int, ...]]  # a run, a split and some of its sessions
 Files = dict[tuple["Run", str], EpisodeFile]  # the episodes of each run and split
 
 
 @dataclass(frozen=True)
 class Rerunner:
-    """Rolls one policy out, in several processes at once.
+    """Rolls one policy out on the test splits of a tier, in several processes at once.
 
     Attributes:
         settings: The arguments of `load_policy`.
@@ -45,6 +44,7 @@ class Rerunner:
         jobs: How many processes.
         plugins: A folder of packages that these processes alone import from.
         limits: What each process may take.
+        tier: The tier.
     """
 
     settings: dict[str, Any]
@@ -52,6 +52,7 @@ class Rerunner:
     jobs: int
     plugins: Path | None = None
     limits: Limits | None = None
+    tier: Tier = PREFERENCES
 
     def policy(self) -> IsolatedPolicy:
         """The policy in a new process.
@@ -101,7 +102,7 @@ class Rerunner:
         return {
             (run, split): Evaluator(self.described, self.folder / run.name, run.salt).file(split)
             for run in runs
-            for split in TEST_SPLITS
+            for split in self.tier.test_splits
         }
 
     def _work(self, batches: "SimpleQueue[Batch]", files: Files, bar: tqdm) -> None:
@@ -166,6 +167,7 @@ def _shuffled_batches(files: Files) -> list[Batch]:
 
 def _in_order(run: Run, files: Files) -> Episodes:
     return {
-        split: sorted(files[run, split].episodes, key=lambda episode: episode.session)
-        for split in TEST_SPLITS
+        split: sorted(file.episodes, key=lambda episode: episode.session)
+        for (of_run, split), file in files.items()
+        if of_run == run
     }

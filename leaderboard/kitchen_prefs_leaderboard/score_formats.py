@@ -9,7 +9,8 @@ from dataclasses import asdict, astuple
 from rich.table import Table
 from rich.text import Text
 
-from kitchen_prefs.metrics import FURTHER_METRICS, METRICS, Interval
+from kitchen_prefs.evaluation.tiers import Tier
+from kitchen_prefs.metrics import Interval
 from kitchen_prefs_leaderboard.scoring import Entry
 from kitchen_prefs_leaderboard.verification import Verification
 
@@ -18,7 +19,7 @@ def to_tables(entry: Entry, by: str | None) -> Iterator[Table]:
     """An entry's metrics for the terminal."""
     grouped = entry.grouped(by) if by else {}
     # Two tables, because all metrics side by side are wider than a terminal.
-    for names, which in ((METRICS, "means"), (FURTHER_METRICS, "further means")):
+    for names, which in zip(entry.tier.tables, ("means", "further means"), strict=True):
         title = f"{entry.submission.name}: {which} with 95 % intervals"
         metrics = _table(title, "Split", *names)
         for split, of_split in entry.metrics.items():
@@ -36,11 +37,20 @@ def to_tables(entry: Entry, by: str | None) -> Iterator[Table]:
     for split, counts in entry.failure_modes.items():
         modes.add_row(split, *map(str, counts.values()))
     yield modes
+    yield _references(entry.tier)
 
 
-def to_comparison(found: Verification) -> Table:
+def _references(tier: Tier) -> Table:
+    """The headlines of floor and ceiling on the test splits of a tier."""
+    table = _table(f"{tier.headline} of floor and ceiling", "Split", tier.floor, tier.ceiling)
+    for split in tier.test_splits:
+        table.add_row(split, *(f"{value:.3f}" for value in tier.references()[split].values()))
+    return table
+
+
+def to_comparison(found: Verification, tier: Tier) -> Table:
     """A re-run beside the replay, for the terminal."""
-    table = _table("All test splits", "Score", "Mean", "95 % interval")
+    table = _table(f"{tier.title}, all test splits", tier.ranking, "Mean", "95 % interval")
     rows = {"replayed": found.replayed, "run again": found.rerun, "fresh sessions": found.fresh}
     for name, means in rows.items():
         table.add_row(name, f"{means.mean:.3f}", f"{means.low:.3f} to {means.high:.3f}")
@@ -57,7 +67,7 @@ def to_verdict(found: Verification) -> str:
     elif not found.independent:
         why = f"its episodes depend on each other ({found.alone:.0%} went alike alone)"
     else:
-        why = "its Score on fresh sessions is lower"
+        why = "its headline on fresh sessions is lower"
     return f"The re-run does NOT confirm the submission: {why}; {same}."
 
 
@@ -67,7 +77,7 @@ def to_json(entries: Sequence[Entry], by: str | None) -> str:
         {
             "name": entry.submission.name,
             "track": entry.submission.track,
-            "data_version": entry.submission.data_version,
+            "data_version": entry.tier.data_version,
             "digest": entry.digest,
             "splits": _tree(entry.metrics),
             "shortcomings": entry.failure_modes,

@@ -5,21 +5,14 @@ from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import product
 from pathlib import Path
+from typing import Any
 
 from tqdm import tqdm
 
 from kitchen_prefs.datasets.manifest import published_fingerprint
-from kitchen_prefs.metrics import (
-    Episode,
-    Interval,
-    count_failure_modes,
-    failure_modes,
-    mean_of_splits_all,
-    summarise_all,
-)
-from kitchen_prefs.splits import DATA_VERSION, TEST_SPLITS
+from kitchen_prefs.evaluation.tiers import Tier, tier_of
+from kitchen_prefs.metrics import Interval, count_failure_modes
 from kitchen_prefs.utils.visible_text import alike_key
 from kitchen_prefs_leaderboard.replay import replay_split
 from kitchen_prefs_leaderboard.submission_format import Submission
@@ -30,23 +23,30 @@ MEAN = "mean"  # used like a split's name, for the mean in which each split coun
 
 @dataclass(frozen=True)
 class Entry:
-    """A submission and the episodes of its actions.
+    """A submission on one tier, and the episodes of its actions.
 
     Attributes:
         submission: The description of the submission.
-        digest: A hash of all of the submission's files.
-        episodes: The episodes of each test split.
+        digest: A hash of the submission's files of the tier.
+        episodes: The episodes of each test split of the tier.
     """
 
     submission: Submission
     digest: str
-    episodes: dict[str, list[Episode]]
+    episodes: dict[str, list[Any]]
+
+    @property
+    def tier(self) -> Tier:
+        """The tier of its splits."""
+        return tier_of(next(iter(self.episodes)))
 
     @cached_property
     def metrics(self) -> dict[str, dict[str, Interval]]:
         """Each metric on each test split, and its mean over them."""
-        of_splits = {split: summarise_all(episodes) for split, episodes in self.episodes.items()}
-        return {**of_splits, MEAN: mean_of_splits_all(list(self.episodes.values()))}
+        of_splits = {
+            split: self.tier.summarise(episodes) for split, episodes in self.episodes.items()
+        }
+        return {**of_splits, MEAN: self.tier.mean_of_splits(list(self.episodes.values()))}
 
     @cached_property
     def failure_modes(self) -> dict[str, dict[str, int]]:
@@ -54,7 +54,9 @@ class Entry:
         return {
             split: {
                 mode: n
-                for mode, (n, _) in count_failure_modes(map(failure_modes, episodes)).items()
+                for mode, (n, _) in count_failure_modes(
+                    map(self.tier.failure_modes, episodes)
+                ).items()
             }
             for split, episodes in self.episodes.items()
         }
@@ -64,10 +66,17 @@ class Entry:
 
         Args:
             by: "preference" or "count".
+
+        Raises:
+            ValueError: If the tier has no such groups.
         """
+        if by not in self.tier.groups:
+            raise ValueError(
+                f"Entries of the tier {self.tier.name!r} have no groups by {by}; leave out --by."
+            )
         return {
             split: {
-                str(group): summarise_all([e for e in episodes if getattr(e, by) == group])
+                str(group): self.tier.summarise([e for e in episodes if getattr(e, by) == group])
                 for group in sorted({getattr(episode, by) for episode in episodes})
             }
             for split, episodes in self.episodes.items()
@@ -117,15 +126,36 @@ def _check_names(submissions: Sequence[SubmissionFiles]) -> None:
             )
 
 
-def replay_submissions(submissions: Sequence[SubmissionFiles], jobs: int) -> list[Entry]:
-    """Replay submissions that were read, see `score_submissions`."""
-    work = list(product(range(len(submissions)), TEST_SPLITS))
+def replay_submissions(
+    submissions: Sequence[SubmissionFiles], jobs: int, tier: Tier | None = None
+) -> list[Entry]:
+    """Replay submissions that were read, see `score_submissions`.
+
+    Args:
+        submissions: The submissions.
+        jobs: How many splits are replayed at once.
+        tier: The tier that is replayed; None for all.
+
+    Returns:
+        An entry for each tier of each submission.
+    """
+    parts = [
+        (i, one)
+        for i, submission in enumerate(submissions)
+        for one in submission.description.tiers
+        if tier in (None, one)
+    ]
+    work = [(i, split) for i, one in parts for split in one.test_splits]
     for i, split in work:
         submissions[i].lines(split)  # quick, and nothing is replayed if one is malformed
     episodes = _replay(submissions, work, jobs)
     return [
-        Entry(submission.description, submission.digest, {s: episodes[i, s] for s in TEST_SPLITS})
-        for i, submission in enumerate(submissions)
+        Entry(
+            submissions[i].description,
+            submissions[i].digest(one),
+            {split: episodes[i, split] for split in one.test_splits},
+        )
+        for i, one in parts
     ]
 
 
@@ -137,11 +167,13 @@ def read_known(folder: Path) -> SubmissionFiles:
     """
     submission = read_submission(folder)
     description = submission.description
-    if description.data_version != DATA_VERSION:
-        raise ValueError(
-            f"{folder} is of data version {description.data_version}; this version of "
-            f"kitchen_prefs replays version {DATA_VERSION}."
-        )
+    for tier in description.tiers:
+        version = description.versions[tier.name]
+        if version != tier.data_version:
+            raise ValueError(
+                f"{folder} is of data version {version}; this version of "
+                f"kitchen_prefs replays version {tier.data_version}."
+            )
     for name, fingerprint in description.fingerprints.items():
         if published_fingerprint(name) != fingerprint:
             raise ValueError(f"{folder} was made with another data set {name!r}.")
@@ -150,7 +182,7 @@ def read_known(folder: Path) -> SubmissionFiles:
 
 def _replay(
     submissions: Sequence[SubmissionFiles], work: Sequence[tuple[int, str]], jobs: int
-) -> dict[tuple[int, str], list[Episode]]:
+) -> dict[tuple[int, str], list[Any]]:
     """Replay splits of submissions; the first one that is refused ends the work."""
     try:
         with ProcessPoolExecutor(jobs) as pool:

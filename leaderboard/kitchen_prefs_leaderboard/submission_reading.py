@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from kitchen_prefs.splits import get_split
+from kitchen_prefs.evaluation.tiers import Tier, tier_of
 from kitchen_prefs.utils.untrusted_files import parse, read_bytes
 from kitchen_prefs_leaderboard.submission_format import (
     ACTIONS,
@@ -56,10 +56,15 @@ class SubmissionFiles:
         return parse_lines(self.contents[name], split, self.folder / name)
 
     @property
-    def digest(self) -> str:
-        """A hash of all files."""
+    def splits(self) -> list[str]:
+        """The test splits of the tiers that it covers."""
+        return [split for tier in self.description.tiers for split in tier.test_splits]
+
+    def digest(self, tier: Tier) -> str:
+        """A hash of the description and of a tier's files."""
         sha = hashlib.sha256()
-        for name, content in self.contents.items():
+        for name in (DESCRIPTION, *(ACTIONS[split] for split in tier.test_splits)):
+            content = self.contents[name]
             sha.update(f"{name} {len(content)}\n".encode())
             sha.update(content)
         return sha.hexdigest()
@@ -74,8 +79,9 @@ def read_submission(folder: Path) -> SubmissionFiles:
     content = read_bytes(folder / DESCRIPTION, MOST_DESCRIPTION)
     description = parse_description(content, folder / DESCRIPTION)
     contents = {DESCRIPTION: content}
-    for name in ACTIONS.values():
-        contents[name] = read_bytes(folder / name, MOST_COMPRESSED)
+    for tier in description.tiers:
+        for name in (ACTIONS[split] for split in tier.test_splits):
+            contents[name] = read_bytes(folder / name, MOST_COMPRESSED)
     return SubmissionFiles(folder, description, contents)
 
 
@@ -105,7 +111,7 @@ def parse_lines(content: bytes, split: str, file: Path) -> list[Line]:
                 f"{file}, line {index + 1} is session {line.session}; each session appears once, "
                 "in order from 0."
             )
-    wanted = get_split(split).sessions
+    wanted = tier_of(split).sessions(split)
     if len(lines) != wanted:
         raise ValueError(f"{file} has {len(lines)} episodes; {split} has {wanted} sessions.")
     return lines

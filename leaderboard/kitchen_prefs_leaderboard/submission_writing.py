@@ -14,8 +14,7 @@ from kitchen_prefs.datasets.manifest import published_fingerprint
 from kitchen_prefs.evaluation.checkpoint_reading import find_checkpoint
 from kitchen_prefs.evaluation.isolation.isolated_policy import IsolatedPolicy
 from kitchen_prefs.evaluation.policy_loading import LoadedPolicy
-from kitchen_prefs.metrics import Episode
-from kitchen_prefs.splits import DATA_VERSION, TEST_SPLITS
+from kitchen_prefs.evaluation.tiers import PREFERENCES, AnyEpisode, Tier
 from kitchen_prefs.utils.files import atomic_folder
 from kitchen_prefs.utils.untrusted_files import complaint
 from kitchen_prefs_leaderboard.plugin_identity import find_plugin
@@ -23,7 +22,6 @@ from kitchen_prefs_leaderboard.replay import to_jsonl, write_line
 from kitchen_prefs_leaderboard.submission_format import (
     ACTIONS,
     DESCRIPTION,
-    FORMAT,
     UNSPECIFIED,
     Policy,
     Submission,
@@ -44,7 +42,7 @@ def check_replaceable(folder: Path) -> None:
 
 
 def write_submission(
-    submission: Submission, rolled_out: Mapping[str, Sequence[Episode]], folder: Path
+    submission: Submission, rolled_out: Mapping[str, Sequence[AnyEpisode]], folder: Path
 ) -> None:
     """Write a submission atomically.
 
@@ -59,28 +57,33 @@ def write_submission(
             lines = to_jsonl([write_line(episode) for episode in episodes])
             # A fifth smaller than gzip, and without a time stamp: equal actions give equal bytes.
             (unfinished / ACTIONS[split]).write_bytes(bz2.compress(lines))
-        absent = None if submission.policy.plugin else {"policy": {"plugin"}}
+        absent: dict[str, Any] = {} if submission.policy.plugin else {"policy": {"plugin"}}
+        absent |= {"data_versions" if submission.format == 1 else "data_version": True}
         description = submission.model_dump_json(indent=2, exclude=absent)
         (unfinished / DESCRIPTION).write_text(f"{description}\n")
 
 
-def describe(**about: Any) -> Submission:
+def describe(tiers: Sequence[Tier] = (PREFERENCES,), **about: Any) -> Submission:
     """Describe a submission, with the versions of the installed packages.
 
     Args:
+        tiers: The tiers that it covers.
         about: The fields of a `Submission` that only its author knows.
 
     Raises:
         ValueError: If one of them does not follow the format.
     """
-    fingerprints = {
-        dataset: published_fingerprint(dataset)
-        for dataset in (f"dishwasher-{split}-v{DATA_VERSION}" for split in TEST_SPLITS)
-    }
+    names = [
+        f"dishwasher-{split}-v{tier.data_version}" for tier in tiers for split in tier.test_splits
+    ]
+    published = {name: published_fingerprint(name) for name in names}
+    versions = {tier.name: tier.data_version for tier in tiers}
+    only_first = versions.keys() == {PREFERENCES.name}
     here = {
-        "format": FORMAT,
-        "data_version": DATA_VERSION,
-        "fingerprints": fingerprints,
+        "format": 1 if only_first else 2,
+        "data_version": PREFERENCES.data_version if only_first else None,
+        "data_versions": None if only_first else versions,
+        "fingerprints": {name: one for name, one in published.items() if one is not None},
         "packages": installed_packages(),
     }
     try:

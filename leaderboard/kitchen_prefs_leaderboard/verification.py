@@ -26,7 +26,10 @@ PROCEDURE: Literal[2] = 2
 
 
 class ScoreInterval(Strict):
-    """The mean Score over the test splits and its 95 % interval."""
+    """The mean headline over the test splits of a tier and its 95 % interval.
+
+    The headline is Score, and rescaled H in the second tier.
+    """
 
     mean: float
     low: float
@@ -38,7 +41,7 @@ class Verification(Strict):
 
     Attributes:
         procedure: Which procedure it followed, see `PROCEDURE`.
-        digest: The hash of the submission's files.
+        digest: The hash of the submission's files of one tier.
         by: Who re-ran it.
         sandbox: Whether the policy's process was confined.
         packages: The versions of the packages that ran it.
@@ -48,14 +51,14 @@ class Verification(Strict):
         itself: The share of episodes with the same decisions in two runs in batches; None for one.
         alone: The share of the episodes that were rolled out in a batch of their own and went as
             in a batch with others.
-        replayed: Score of the submission's actions.
-        rerun: Score of the policy on the same sessions.
-        fresh: Score of the policy on the fresh sessions.
-        scores: Score of the policy in each session of each test split; of a policy that does not
-            repeat itself, in the run with each session in a batch of its own.
+        replayed: The headline of the submission's actions.
+        rerun: That of the policy on the same sessions.
+        fresh: That of the policy on the fresh sessions.
+        scores: What each session of each test split contributes to the policy's headline; of a
+            policy that does not repeat itself, in the run with each session in a batch of its own.
         repeats: Whether the policy does what the submission says.
         independent: Whether an episode does not depend on others.
-        generalises: Whether its Score on the fresh sessions is not significantly lower.
+        generalises: Whether its headline on the fresh sessions is not significantly lower.
     """
 
     procedure: Literal[1, 2] = 1

@@ -108,7 +108,7 @@ def tables(entries, verified):
 def file(tables, tmp_path_factory):
     """The page."""
     out = tmp_path_factory.mktemp("page") / "leaderboard.html"
-    write_page(tables, out)
+    write_page({"preferences": tables}, out)
     return out
 
 
@@ -168,7 +168,7 @@ def test_a_tie_shows(tables, tmp_path, browser):
         track: [replace(row, rank=2, tied=True) for row in rows] for track, rows in tables.items()
     }
     out = tmp_path / "tied.html"
-    write_page(tied, out)
+    write_page({"preferences": tied}, out)
     page = browser.new_page()
     page.goto(out.as_uri(), timeout=PATIENCE)
     assert set(page.locator("td.rank").all_text_contents()) == {"2 ="}
@@ -291,7 +291,7 @@ def test_an_episode_steps_to_its_end(page, entries):
 def test_every_episode_ends_as_in_the_kitchen(page, tables):
     ends = page.evaluate(
         """() => data.entries.map((entry) => SPLITS.map((split) =>
-            entry.episodes[split].map(([decisions, refused], number) => {
+            entry.drawn.episodes[split].map(([decisions, refused], number) => {
                 const steps = replay(data.sessions[split][number], decisions, refused);
                 const { places, doorOpen, out } = steps.at(-1).state;
                 const count = (place) => places.filter((one) => one === place).length;

@@ -65,14 +65,14 @@ def test_a_session_or_a_split_that_is_not_recorded_is_named(recordings, tmp_path
     copy = copytree(recordings, tmp_path / "copy")
     rmtree(copy / "seen/recordings/kitchen_prefs_0/env_0")
     with pytest.raises(ValueError, match=r"seen.recordings lacks session \d of seen; run"):
-        read_recordings(copy)
+        read_recordings(copy, TEST_SPLITS)
     file = next((copy / "seen/recordings").rglob("data/*/*.parquet"))
     file.write_bytes(file.read_bytes()[:500])
     with pytest.raises(ValueError, match="is no recording of this environment"):
-        read_recordings(copy)
+        read_recordings(copy, TEST_SPLITS)
     rmtree(copy / "noisy/recordings")
     with pytest.raises(ValueError, match="noisy has no recordings"):
-        read_recordings(copy)
+        read_recordings(copy, TEST_SPLITS)
 
 
 def test_recordings_of_another_split_are_refused(recordings, tmp_path):
@@ -80,4 +80,4 @@ def test_recordings_of_another_split_are_refused(recordings, tmp_path):
     rmtree(copy / "seen")
     copytree(recordings / "unseen_counts", copy / "seen")
     with pytest.raises(ValueError, match="holds an episode of no session of seen"):
-        read_recordings(copy)
+        read_recordings(copy, TEST_SPLITS)

@@ -19,6 +19,7 @@ from short_splits import SESSIONS, short_splits
 
 from kitchen_prefs import instances
 from kitchen_prefs.envs.episode_simulator import EpisodeSimulator
+from kitchen_prefs.evaluation.tiers import PREFERENCES
 from kitchen_prefs.metrics import ALL_METRICS, Interval, mean_of_splits, summarise
 from kitchen_prefs.simulation.sessions import make_session
 from kitchen_prefs.splits import TEST_SPLITS
@@ -79,6 +80,7 @@ def printed(entry, by):
 def test_the_terminal_keeps_the_tens_of_an_interval():
     entry = SimpleNamespace(
         submission=SimpleNamespace(name="act"),
+        tier=PREFERENCES,
         metrics={
             "seen": {"Refused": Interval(20.4, 20.1, 30.25), "Turn": Interval(0.2, -0.1, 1.0)}
         },

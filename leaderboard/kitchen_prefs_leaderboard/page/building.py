@@ -9,19 +9,12 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
-from kitchen_prefs.metrics import (
-    ALL_METRICS,
-    Episode,
-    Interval,
-    packing_efficiency,
-    reference_scores,
-    summarise,
-)
-from kitchen_prefs.splits import DATA_VERSION, TEST_SPLITS, get_split
+from kitchen_prefs.evaluation.tiers import PREFERENCES, TIERS, Tier
+from kitchen_prefs.metrics import Episode, Interval, packing_efficiency, summarise
 from kitchen_prefs.utils.files import atomic_file
 from kitchen_prefs.web.kitchen_data import layout_data, preferences_in_words, sessions_data
 from kitchen_prefs.web.page import SHARED, joined, self_contained_page
-from kitchen_prefs_leaderboard.judgement import rerun_score
+from kitchen_prefs_leaderboard.judgement import rerun_headline
 from kitchen_prefs_leaderboard.page.episode_data import episode_data
 from kitchen_prefs_leaderboard.ranking import Row
 from kitchen_prefs_leaderboard.scoring import MEAN
@@ -47,12 +40,14 @@ BY_COUNT = {
     "Held-out preferences": ("unseen_preferences", "unseen_both"),
 }
 
+NOT_SHOWN = {"format", "fingerprints", "data_version", "data_versions"}  # of a submission
 
-def write_page(tables: Mapping[str, Sequence[Row]], out: Path) -> None:
+
+def write_page(tables: Mapping[str, Mapping[str, Sequence[Row]]], out: Path) -> None:
     """Write the leaderboard as one HTML file, whole or not at all.
 
     Args:
-        tables: The rows of each track.
+        tables: The rows of each track of each tier.
         out: The file.
     """
     html = to_html(page_data(tables))
@@ -60,17 +55,16 @@ def write_page(tables: Mapping[str, Sequence[Row]], out: Path) -> None:
         unfinished.write_text(html, encoding="utf-8")
 
 
-def page_data(tables: Mapping[str, Sequence[Row]]) -> dict[str, Any]:
+def page_data(tables: Mapping[str, Mapping[str, Sequence[Row]]]) -> dict[str, Any]:
     """All that the page shows."""
-    rows = [row for of_track in tables.values() for row in of_track]
-    sessions = sessions_data(TEST_SPLITS)
+    rows = [row for of_tier in tables.values() for of_track in of_tier.values() for row in of_track]
+    firsts = {row.entry.tier.name: row for row in reversed(rows)}
+    sessions = sessions_data(PREFERENCES.test_splits if PREFERENCES.name in firsts else ())
     return {
-        "version": DATA_VERSION,
         "mean": MEAN,
-        "references": reference_scores(),
-        "metrics": list(ALL_METRICS),
-        "splits": {split: get_split(split).sessions for split in TEST_SPLITS},
-        "failure_modes": list(rows[0].entry.failure_modes[TEST_SPLITS[0]]),
+        "tiers": {
+            name: _tier_data(tier, firsts[name]) for name, tier in TIERS.items() if name in firsts
+        },
         "entries": [_entry_data(row) for row in rows],
         "layout": layout_data(),
         "preferences": preferences_in_words(sessions),
@@ -88,36 +82,58 @@ def to_html(data: Mapping[str, Any]) -> str:
     )
 
 
+def _tier_data(tier: Tier, first: Row) -> dict[str, Any]:
+    """What the entries of a tier have in common, of which one is given."""
+    return {
+        "title": tier.title,
+        "version": tier.data_version,
+        "headline": tier.headline,
+        "ranking": tier.ranking,
+        "floor": tier.floor,
+        "ceiling": tier.ceiling,
+        "references": {split: tier.references()[split] for split in tier.test_splits},
+        "metrics": [name for names in tier.tables for name in names],
+        "splits": {split: tier.sessions(split) for split in tier.test_splits},
+        "failure_modes": list(first.entry.failure_modes[tier.test_splits[0]]),
+    }
+
+
 def _entry_data(row: Row) -> dict[str, Any]:
     entry, verification = row.entry, row.verification
     return {
-        "submission": entry.submission.model_dump(exclude={"format", "fingerprints"}),
+        "tier": entry.tier.name,
+        "submission": entry.submission.model_dump(exclude=NOT_SHOWN),
         "digest": entry.digest,
         "rank": row.rank,
         "tied": row.tied,
         "verification": verification and verification.model_dump(exclude={"digest", "scores"}),
         "metrics": _metrics(row),
+        "failure_modes": {split: list(of.values()) for split, of in entry.failure_modes.items()},
+        "drawn": _drawn(entry.episodes) if entry.tier is PREFERENCES else None,
+    }
+
+
+def _drawn(episodes: Mapping[str, Sequence[Episode]]) -> dict[str, Any]:
+    """What charts and the viewer draw, whose kitchen knows the first tier's dishes alone."""
+    return {
         "by_count": {
-            name: _by_count([episode for split in splits for episode in entry.episodes[split]])
+            name: _by_count([episode for split in splits for episode in episodes[split]])
             for name, splits in BY_COUNT.items()
         },
-        "failure_modes": {split: list(of.values()) for split, of in entry.failure_modes.items()},
-        "episodes": {
-            split: [episode_data(episode) for episode in episodes]
-            for split, episodes in entry.episodes.items()
-        },
+        "episodes": {split: list(map(episode_data, own)) for split, own in episodes.items()},
     }
 
 
 def _metrics(row: Row) -> dict[str, dict[str, list[float]]]:
-    """Every metric of the replay; Score is the re-run's where its record has it."""
+    """Every metric of the replay; the one of the ranking is the re-run's if its record has it."""
     metrics = {
         split: {name: _numbers(interval) for name, interval in of_split.items()}
         for split, of_split in row.entry.metrics.items()
     }
     if row.verification and row.verification.scores:
         for split, of_split in metrics.items():
-            of_split["Score"] = _numbers(rerun_score(row.entry, row.verification, split))
+            interval = rerun_headline(row.entry, row.verification, split)
+            of_split[row.entry.tier.ranking] = _numbers(interval)
     return metrics
 
 

@@ -70,7 +70,7 @@ function panel(title, chart) {
 
 function countPanel(title, rows, low) {
   const [left, right, top, bottom] = [30, PANEL - 12, 10, 190];
-  const counts = data.entries[0].by_count[title].map(([count]) => count);
+  const counts = data.entries.find(isDrawn).drawn.by_count[title].map(([count]) => count);
   const [fewest, most] = [counts[0], counts.at(-1)];
   const x = (count) => left + 10 + ((count - fewest) / (most - fewest)) * (right - left - 20);
   const y = (value) => bottom - ((value - low) / (1 - low)) * (bottom - top);
@@ -84,7 +84,7 @@ function countPanel(title, rows, low) {
   const inWords = rows.map((index, row) => {
     const shift = (row - (rows.length - 1) / 2) * Math.min(4, 20 / rows.length);
     chart.append(countLine(index, title, (count) => x(count) + shift, y));
-    const means = data.entries[index].by_count[title];
+    const means = data.entries[index].drawn.by_count[title];
     const each = means.map(([count, mean]) => `${count}: ${fixed(mean)}`);
     return `${nameOf(index)} ${each.join(", ")}`;
   });
@@ -94,7 +94,7 @@ function countPanel(title, rows, low) {
 
 /** One entry's line, shifted a little so that the bars of all entries can be seen. */
 function countLine(index, title, x, y) {
-  const points = data.entries[index].by_count[title];
+  const points = data.entries[index].drawn.by_count[title];
   const line = points.map(([count, mean]) => `${x(count)},${y(mean)}`).join("L");
   return svg(
     "g",
@@ -123,9 +123,9 @@ function drawCharts() {
   const entries = rows.map((index) => data.entries[index]);
   const ofSplits = entries.flatMap(({ metrics }) => SPLITS.map((split) => metrics[split].PE));
   const splitLow = lowest(ofSplits.map(([, low]) => low));
-  const points = entries.flatMap(({ by_count }) => Object.values(by_count).flat());
+  const points = entries.flatMap(({ drawn }) => Object.values(drawn.by_count).flat());
   const countLow = lowest(points.map(([, , low]) => low));
-  const titles = Object.keys(data.entries[0].by_count);
+  const titles = Object.keys(data.entries.find(isDrawn).drawn.by_count);
   byId("chart-legend").replaceChildren(...chartLegend(rows));
   byId("by-split").replaceChildren(
     ...(rows.length ? SPLITS.map((split) => splitPanel(split, rows, splitLow)) : [none()]));

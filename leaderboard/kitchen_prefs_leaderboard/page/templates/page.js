@@ -1,13 +1,25 @@
+function tierFacts({ title, splits, version }) {
+  const episodes = Object.values(splits).reduce((sum, sessions) => sum + sessions, 0);
+  return `${title}: ${Object.keys(splits).length} test splits, ${episodes} episodes each, `
+    + `data version ${version}`;
+}
+
 function showFacts() {
-  const episodes = Object.values(data.splits).reduce((sum, sessions) => sum + sessions, 0);
-  byId("facts").textContent = [`${data.entries.length} entries`,
-    `${SPLITS.length} test splits, ${episodes} episodes each`,
-    `data version ${data.version}`].join(" \u00b7 ");
+  const facts = [`${data.entries.length} entries`, ...Object.values(data.tiers).map(tierFacts)];
+  byId("facts").textContent = facts.join(" \u00b7 ");
+}
+
+/** Charts and the viewer, of which a page without entries that they can draw has none. */
+function startDrawings() {
+  const some = data.entries.some(isDrawn);
+  for (const id of ["charts", "episodes"]) byId(id).hidden = !some;
+  if (!some) return;
+  drawCharts();
+  startViewer();
 }
 
 startTheme(byId("theme"));
 showFacts();
 startTables();
-drawCharts();
 startFailureModes();
-startViewer();
+startDrawings();

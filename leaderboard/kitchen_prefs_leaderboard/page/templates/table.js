@@ -1,21 +1,21 @@
 const shown = new Set(); // the entries whose boxes are ticked
 
-/** The columns of a view: all metrics of one split, or one metric on all splits. */
-function columnsOf(view) {
-  const [kind, name] = view.split(":");
-  if (kind === "split") return data.metrics.map((metric) => column(metric, metric, name));
-  return [data.mean, ...SPLITS].map((split) => column(words(split), name, split));
+/** The columns that are chosen: all metrics of one split, or one metric on all splits. */
+function columnsOf(tier) {
+  const [kind, name] = tier.columns.value.split(":");
+  if (kind === "split") return tier.metrics.map((metric) => column(tier, metric, metric, name));
+  return [data.mean, ...splitsOf(tier)].map((split) => column(tier, words(split), name, split));
 }
 
-function column(title, metric, split) {
-  const note = metric === "Rescaled" ? referenceNote(split) : "";
+function column(tier, title, metric, split) {
+  const note = metric === "Rescaled" ? referenceNote(tier, split) : "";
   return { title, note, values: (entry) => entry.metrics[split][metric] };
 }
 
-/** The Scores at which the rescaled Score of a split is 0 and 1. */
-function referenceNote(split) {
-  const { floor, ceiling } = data.references[split] ?? { floor: 0, ceiling: 1 };
-  const digits = split in data.references ? 3 : 0;
+/** The headlines at which the rescaled headline of a split is 0 and 1. */
+function referenceNote({ references }, split) {
+  const { floor, ceiling } = references[split] ?? { floor: 0, ceiling: 1 };
+  const digits = split in references ? 3 : 0;
   return `floor\u00a0${fixed(floor, digits)}, ceiling\u00a0${fixed(ceiling, digits)}`;
 }
 
@@ -58,7 +58,7 @@ function about(entry) {
   if (plugin !== null) {
     facts.push(["Plug-in", `${plugin.distribution} ${plugin.version}, code ${plugin.code}`]);
   }
-  if (verification !== null) facts.push(["Re-run", rerunText(verification)]);
+  if (verification !== null) facts.push(["Re-run", rerunText(tierOf(entry), verification)]);
   return html(
     "dl",
     { class: "about" },
@@ -68,7 +68,8 @@ function about(entry) {
 
 const ALIKE = 0.95; // kitchen_prefs_leaderboard/judgement.py
 
-function rerunText({ same, itself, replayed, rerun, fresh, salt, by, runs, alone, sandbox }) {
+function rerunText({ ranking }, verification) {
+  const { same, itself, replayed, rerun, fresh, salt, by, runs, alone, sandbox } = verification;
   const fresher = `fresh sessions (seed ${salt})`;
   const scores = [["replayed", replayed], ["re-run", rerun], [fresher, fresh]];
   const parts = scores.map(([name, { mean, low, high }]) =>
@@ -79,12 +80,12 @@ function rerunText({ same, itself, replayed, rerun, fresh, salt, by, runs, alone
     stochastic
       ? `It does not repeat itself: ${percent(itself)} of the episodes of two runs are alike`
       : `${percent(same)} of the episodes have the same decisions`,
-    `Score: ${parts.join(", ")}`,
+    `${ranking}: ${parts.join(", ")}`,
   ];
   if (alone !== null) {
     const where = sandbox ? "a confined process" : "a process";
     facts.push(`By ${by}, in ${where} of its own, ${runs === 1 ? "once" : `${runs} times`}`);
-    facts.push(stochastic ? "The Score shown is that of the run with each session alone"
+    facts.push(stochastic ? `The ${ranking} shown is that of the run with each session alone`
       : `${percent(alone)} of the episodes that were rolled out alone went alike`);
   }
   return `${facts.join(". ")}.`;
@@ -93,16 +94,7 @@ function rerunText({ same, itself, replayed, rerun, fresh, salt, by, runs, alone
 function rowOf(entry, columns) {
   const index = data.entries.indexOf(entry);
   const { name, authors } = entry.submission;
-  const box = html("input", {
-    type: "checkbox",
-    "aria-label": `Show ${name} in the charts`,
-    change: () => {
-      if (box.checked) shown.add(index);
-      else shown.delete(index);
-      drawCharts();
-    },
-  });
-  box.checked = shown.has(index);
+  const tick = isDrawn(entry) ? [tickBox(index, name)] : [];
   const more = html("button", {
     type: "button",
     class: "more",
@@ -115,7 +107,7 @@ function rowOf(entry, columns) {
   const row = html(
     "tr",
     {},
-    html("td", { class: "tick" }, box),
+    html("td", { class: "tick" }, ...tick),
     html("td", { class: "rank" }, rankOf(entry)),
     html("th", { scope: "row", class: "name" }, more,
       html("span", { class: "by" }, authors.join(", ")), badges(entry)),
@@ -125,6 +117,21 @@ function rowOf(entry, columns) {
   row.about = html("tr", { hidden: "" }, html("td"),
     html("td", { colspan: columns.length + 2 }, about(entry)));
   return row;
+}
+
+/** The box that puts an entry into the charts. */
+function tickBox(index, name) {
+  const box = html("input", {
+    type: "checkbox",
+    "aria-label": `Show ${name} in the charts`,
+    change: () => {
+      if (box.checked) shown.add(index);
+      else shown.delete(index);
+      drawCharts();
+    },
+  });
+  box.checked = shown.has(index);
+  return box;
 }
 
 function numbers(values) {
@@ -171,8 +178,7 @@ function headerOf(table, sorter) {
 }
 
 /** A track's table: the ranked entries, then those without a re-run. */
-function trackTable(track, columns) {
-  const entries = data.entries.filter(({ submission }) => submission.track === track);
+function trackTable(track, entries, columns) {
   const table = html("table", {}, html("caption", { class: "unseen" }, `${track} track`));
   const headers = sorters(columns).map((sorter) => headerOf(table, sorter));
   headers[0].setAttribute("aria-sort", "ascending");
@@ -198,24 +204,29 @@ function block(title, remark, entries, columns) {
     ...entries.map((entry) => rowOf(entry, columns)).flatMap((row) => [row, row.about]));
 }
 
-/** The Scores of floor and ceiling on each split. */
-function referenceTable() {
+/** The headlines of floor and ceiling on each split. */
+function referenceTable({ title, headline, references, floor, ceiling }) {
+  const splits = Object.keys(references);
   const head = (text, scope, name = "") => html("th", { scope, class: name }, text);
   const row = (name, policy) => html("tr", {},
     html("th", { scope: "row" }, `${name}: ${policy}`),
-    ...SPLITS.map((split) => html("td", { class: "number" }, fixed(data.references[split][name]))));
+    ...splits.map((split) => html("td", { class: "number" }, fixed(references[split][name]))));
   return html("table", { class: "references" },
-    html("caption", { class: "unseen" }, "Scores of floor and ceiling"),
-    html("thead", {}, html("tr", {}, head("Score", "col"),
-      ...SPLITS.map((split) => head(words(split), "col", "number")))),
-    html("tbody", {}, row("floor", "promptless"), row("ceiling", "bayes")));
+    html("caption", { class: "unseen" }, `${title}: ${headline} of floor and ceiling`),
+    html("thead", {}, html("tr", {}, head(headline, "col"),
+      ...splits.map((split) => head(words(split), "col", "number")))),
+    html("tbody", {}, row("floor", floor), row("ceiling", ceiling)));
 }
 
 function drawTables() {
-  const columns = columnsOf(byId("columns").value);
-  const tracks = Object.keys(TRACKS).filter((track) =>
-    data.entries.some(({ submission }) => submission.track === track));
-  byId("tables").replaceChildren(...tracks.map((track) => trackTable(track, columns)));
+  for (const [name, tier] of Object.entries(data.tiers)) {
+    const columns = columnsOf(tier);
+    const ofTrack = (track) => data.entries.filter((entry) =>
+      entry.tier === name && entry.submission.track === track);
+    const tracks = Object.keys(TRACKS).filter((track) => ofTrack(track).length > 0);
+    tier.tables.replaceChildren(
+      ...tracks.map((track) => trackTable(track, ofTrack(track), columns)));
+  }
   filterTables();
 }
 
@@ -252,27 +263,36 @@ function filterTables() {
 /** At first the charts show the best three of each track. */
 function tickBest() {
   const taken = {};
-  data.entries.forEach(({ submission: { track } }, index) => {
+  data.entries.forEach((entry, index) => {
+    if (!isDrawn(entry)) return;
+    const { track } = entry.submission;
     taken[track] = (taken[track] ?? 0) + 1;
     if (taken[track] <= 3) shown.add(index);
   });
 }
 
+/** A tier's heading, its choice of columns and the place of its tables. */
+function tierSection(tier) {
+  const ofSplits = [data.mean, ...splitsOf(tier)].map((split) =>
+    html("option", { value: `split:${split}` },
+      split === data.mean ? "mean over the splits" : words(split)));
+  const ofMetrics = tier.metrics.map((metric) =>
+    html("option", { value: `metric:${metric}` }, `${metric} on every split`));
+  tier.columns = html("select", { change: drawTables },
+    html("optgroup", { label: "All metrics" }, ...ofSplits),
+    html("optgroup", { label: "All splits" }, ...ofMetrics));
+  tier.tables = html("div");
+  const controls = html("div", { class: "controls" }, html("label", {}, "Columns ", tier.columns));
+  return html("section", { class: "tier" }, html("h3", {}, tier.title), controls, tier.tables);
+}
+
 function startTables() {
   const tracks = [...new Set(data.entries.map(({ submission }) => submission.track))];
   setOptions(byId("track"), [["all", "all tracks"], ...tracks.map((track) => [track, track])]);
-  const ofSplits = [data.mean, ...SPLITS].map((split) => html("option", { value: `split:${split}` },
-    split === data.mean ? "mean over the splits" : words(split)));
-  const ofMetrics = data.metrics.map((metric) =>
-    html("option", { value: `metric:${metric}` }, `${metric} on every split`));
-  byId("columns").replaceChildren(
-    html("optgroup", { label: "All metrics" }, ...ofSplits),
-    html("optgroup", { label: "All splits" }, ...ofMetrics),
-  );
-  byId("columns").addEventListener("change", drawTables);
+  byId("tables").replaceChildren(...Object.values(data.tiers).map(tierSection));
   byId("track").addEventListener("change", filterTables);
   byId("search").addEventListener("input", filterTables);
-  byId("references").replaceChildren(referenceTable());
+  byId("references").replaceChildren(...Object.values(data.tiers).map(referenceTable));
   tickBest();
   drawTables();
 }

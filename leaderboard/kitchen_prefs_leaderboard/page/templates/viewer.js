@@ -4,8 +4,8 @@ const viewer = { policy: [], expert: [], step: 0, last: 0, timer: null };
 const chosen = (id) => Number(byId(`viewer-${id}`).value);
 const chosenSplit = () => byId("viewer-split").value;
 
-function episodeFacts([, refused, [score, pe, order], success, bits]) {
-  const modes = data.failure_modes.filter((_, bit) => bits & (1 << bit));
+function episodeFacts(entry, [, refused, [score, pe, order], success, bits]) {
+  const modes = tierOf(entry).failure_modes.filter((_, bit) => bits & (1 << bit));
   return [`Score ${fixed(score)}`, `PE ${fixed(pe)}`, `ED_c ${fixed(order)}`,
     success ? "success" : "no success", `${refused.length} refused`,
     ...(modes.length ? [`failure modes: ${modes.join(", ")}`] : [])].join(" \u00b7 ");
@@ -13,14 +13,15 @@ function episodeFacts([, refused, [score, pe, order], success, bits]) {
 
 /** Which episodes the list of sessions offers, and in which order. */
 function filterChoices() {
-  const counts = data.entries[chosen("entry")].failure_modes[chosenSplit()];
-  const modes = data.failure_modes.map((name, i) => [`mode:${i}`, `${name} (${counts[i]})`])
+  const entry = data.entries[chosen("entry")];
+  const counts = entry.failure_modes[chosenSplit()];
+  const modes = tierOf(entry).failure_modes.map((name, i) => [`mode:${i}`, `${name} (${counts[i]})`])
     .filter((_, i) => counts[i] > 0);
   return [["all", "all, in order"], ["worst", "all, lowest Score first"], ...modes];
 }
 
 function sessionChoices() {
-  const episodes = data.entries[chosen("entry")].episodes[chosenSplit()];
+  const episodes = data.entries[chosen("entry")].drawn.episodes[chosenSplit()];
   const [kind, mode] = byId("viewer-filter").value.split(":");
   let numbers = episodes.map((_, i) => i);
   if (kind === "worst") numbers.sort((a, b) => episodes[a][2][0] - episodes[b][2][0]);
@@ -56,12 +57,12 @@ function openEpisode() {
   pause();
   const [entry, number] = [data.entries[chosen("entry")], chosen("session")];
   const session = data.sessions[chosenSplit()][number];
-  const episode = entry.episodes[chosenSplit()][number];
+  const episode = entry.drawn.episodes[chosenSplit()][number];
   viewer.policy = replay(session, episode[0], episode[1]);
   viewer.expert = replay(session, session.expert, []);
   viewer.last = Math.max(viewer.policy.length, viewer.expert.length) - 1;
   byId("preference").textContent = `\u201c${data.preferences[session.preference]}\u201d`;
-  byId("episode-facts").textContent = episodeFacts(episode);
+  byId("episode-facts").textContent = episodeFacts(entry, episode);
   byId("policy-name").textContent = entry.submission.name;
   byId("slider").max = viewer.last;
   goTo(0);
@@ -123,7 +124,7 @@ function onKey(event) {
 }
 
 function startViewer() {
-  setOptions(byId("viewer-entry"), entryChoices());
+  setOptions(byId("viewer-entry"), entryChoices(isDrawn));
   setOptions(byId("viewer-split"), SPLITS.map((split) => [split, words(split)]));
   byId("dish-legend").replaceChildren(...dishLegend());
   byId("viewer-entry").addEventListener("change", chooseSplit);
