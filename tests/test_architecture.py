@@ -45,8 +45,9 @@ POLICIES = {
         "kitchen_prefs.preferences"
     ),
     "rules": (
-        "common kitchen_prefs.envs kitchen_prefs.instances kitchen_prefs.preferences "
-        "kitchen_prefs.simulation kitchen_prefs.splits kitchen_prefs.utils"
+        "common kitchen_prefs.envs kitchen_prefs.instances kitchen_prefs.people "
+        "kitchen_prefs.preferences kitchen_prefs.simulation kitchen_prefs.splits "
+        "kitchen_prefs.utils"
     ),
     "__init__": (
         "common gnn rules ttp kitchen_prefs.datasets kitchen_prefs.envs kitchen_prefs.utils"

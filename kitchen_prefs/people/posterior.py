@@ -72,6 +72,11 @@ class Posterior:
         self.slips = slips
         self._last: tuple[DescribedDishes, _ZoneReading] | None = None
 
+    @property
+    def is_possible(self) -> bool:
+        """Whether some user's rules about zones explain all demonstrations."""
+        return bool(self._reading(NOTHING.dishes).overflow.sum() > IMPOSSIBLE)
+
     def zones(self, dishes: DescribedDishes) -> np.ndarray:
         """How probable each zone is for each dish, the last washed by hand, (m, 5)."""
         weights = self._reading(dishes).zones

@@ -93,12 +93,15 @@ def by_zone(shown: Shown, dishes: DescribedDishes) -> LoadingPlan:
 
 
 def by_similarity(shown: Shown, dishes: DescribedDishes) -> LoadingPlan:
-    """Each dish goes where the most similar one that was shown went, in its turn."""
+    """Each dish goes where the most similar one that was shown went, in its turn.
+
+    Of several that are equally similar it is the one that was loaded first.
+    """
     likeness = np.zeros((len(dishes.category), len(shown.dishes.category)))
     for name, weight in LIKENESS.items():
         mine, theirs = _values(dishes, name), _values(shown.dishes, name)
         likeness += weight * (mine[:, None] == theirs[None])
-    nearest = likeness.argmax(axis=1)
+    nearest = (likeness - shown.times / 2).argmax(axis=1)  # likeness is a whole number
     return LoadingPlan(shown.zones[nearest], shown.times[nearest], shown.first, **USUAL)
 
 

@@ -46,6 +46,24 @@ def nearest_noisy_category(rows: Tensor, extents: Tensor) -> tuple[Tensor, Tenso
     return category, nearest
 
 
+def category_at_any_size(rows: Any, extents: Any) -> tuple[Any, Any]:
+    """The category whose extents have the same ratios as each row's, and how much larger it is.
+
+    Dishes of the second tier are up to 15 % larger or smaller; no two categories have one shape.
+
+    Args:
+        rows: Rows of sets or prompts, a NumPy array or a torch tensor, (..., D).
+        extents: The extents of C categories in m, (C, 3).
+
+    Returns:
+        The indices of the categories, (...) int64, and the scales, (...).
+    """
+    ratios = rows[..., None, EXTENTS] / extents  # (..., C, 3)
+    uneven = abs(ratios / ratios.mean(-1)[..., None] - 1).sum(-1)  # (..., C)
+    category = uneven.argmin(-1)
+    return category, rows[..., EXTENTS].sum(-1) / extents.sum(-1)[category]
+
+
 class Categories:
     """The categories of a data set.
 

@@ -4,10 +4,15 @@ from dataclasses import dataclass, field
 
 from lerobot.configs import NormalizationMode, PreTrainedConfig
 from lerobot.optim import AdamWConfig, OptimizerConfig
+from lerobot.utils.constants import OBS_STATE
 
+from kitchen_prefs import instances
 from kitchen_prefs.envs.lerobot_env import OBS_INSTANCES, OBS_PREFERENCE, OBS_PROMPT
+from kitchen_prefs.people.yardsticks import YARDSTICKS
 from kitchen_prefs.utils.suggestions import suggest
 
+# The rules of the second tier are its yardsticks, by observations alone.
+PEOPLE_RULES = {f"people_{name}": yardstick for name, yardstick in YARDSTICKS.items()}
 NEEDS = {
     "random": (OBS_INSTANCES,),
     "promptless": (OBS_INSTANCES,),
@@ -16,6 +21,7 @@ NEEDS = {
     "symbolic": (OBS_INSTANCES, OBS_PROMPT),
     "bayes": (OBS_INSTANCES, OBS_PROMPT),
     "expert": (OBS_INSTANCES, OBS_PREFERENCE),
+    **dict.fromkeys(PEOPLE_RULES, (OBS_INSTANCES, OBS_PROMPT, OBS_STATE)),
 }
 
 
@@ -29,7 +35,10 @@ class RulesConfig(PreTrainedConfig):
             "nearest" the training preference that explains the prompt best; "symbolic" the
             preference that it infers from the prompt; "promptless" the exact posterior over all
             2 x 7! preferences given the session's dishes alone (the floor); "bayes" the posterior
-            given the prompt, too (the ceiling); "expert" the label (privileged track).
+            given the prompt, too (the ceiling); "expert" the label (privileged track). On the
+            second tier, "random" and the yardsticks of `kitchen_prefs.people.yardsticks`:
+            "people_promptless" (the floor), "people_category", "people_zone", "people_similar",
+            "people_tree" and "people_bayes" (the ceiling).
 
     Raises:
         ValueError: If the rule is unknown.
@@ -54,7 +63,7 @@ class RulesConfig(PreTrainedConfig):
         """Check that the observation contains what the rule reads.
 
         Raises:
-            ValueError: If a key is missing.
+            ValueError: If a key is missing, or the prompts are those of the other tier.
         """
         for key in NEEDS[self.rule]:
             if key not in (self.input_features or {}):
@@ -63,6 +72,7 @@ class RulesConfig(PreTrainedConfig):
                     f"The rule {self.rule!r} needs {key!r}, which the observation does not "
                     f"contain.{hint}"
                 )
+        self._check_tier()
 
     @property
     def track(self) -> str:
@@ -83,6 +93,20 @@ class RulesConfig(PreTrainedConfig):
     def reward_delta_indices(self) -> None:
         """No rewards are read."""
         return None
+
+    def _check_tier(self) -> None:
+        """Check that prompts have the columns of the rule's tier; "random" takes both."""
+        prompt = (self.input_features or {}).get(OBS_PROMPT)
+        if prompt is None or self.rule == "random":
+            return
+        of_people = prompt.shape[-1] == instances.DESCRIBED_COLUMNS + 1
+        if of_people != (self.rule in PEOPLE_RULES):
+            tier = "second" if self.rule in PEOPLE_RULES else "first"
+            fitting = [rule for rule in NEEDS if (rule in PEOPLE_RULES) == of_people]
+            raise ValueError(
+                f"The rule {self.rule!r} is for splits of the {tier} tier; for this one there are "
+                f"{', '.join(fitting)}."
+            )
 
     def get_optimizer_preset(self) -> OptimizerConfig:
         """Required by LeRobot; a rule has nothing to optimise."""

@@ -1,12 +1,14 @@
 """The rules as a LeRobot policy."""
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 from zlib import crc32
 
 import numpy as np
 import torch
 from lerobot.policies import PreTrainedPolicy
+from lerobot.utils.constants import OBS_STATE
 from torch import Tensor
 
 from kitchen_prefs import instances
@@ -14,8 +16,10 @@ from kitchen_prefs.envs.lerobot_env import OBS_INSTANCES, OBS_PREFERENCE, OBS_PR
 from kitchen_prefs.preferences import SEEN, Preference
 from kitchen_prefs.simulation.expert import choose
 from kitchen_prefs.simulation.sessions import preference_with
-from lerobot_policy_kitchen_prefs.rules.configuration_rules import RulesConfig
+from lerobot_policy_kitchen_prefs.rules.configuration_rules import PEOPLE_RULES, RulesConfig
 from lerobot_policy_kitchen_prefs.rules.observed_view import Memory, ObservedView
+from lerobot_policy_kitchen_prefs.rules.people_plans import PlanFollower
+from lerobot_policy_kitchen_prefs.rules.people_prompts import what_is_shown
 from lerobot_policy_kitchen_prefs.rules.posterior import (
     PosteriorInference,
     prompt_likelihood,
@@ -27,6 +31,7 @@ from lerobot_policy_kitchen_prefs.rules.preference_inference import (
 )
 
 Inference = Callable[[ObservedView], Preference]  # the preference to act by now
+Chooser = Callable[[np.ndarray], int]  # the row to choose of a set, in one episode
 
 
 class RulesPolicy(PreTrainedPolicy):
@@ -43,39 +48,25 @@ class RulesPolicy(PreTrainedPolicy):
 
     def reset(self) -> None:
         """Clear the state: a new batch of episodes begins."""
-        self._inferences: list[Inference] = []
-        self._memories: list[Memory] = []
+        self._choosers: list[Chooser] = []
 
     @torch.no_grad()
     def select_action(self, batch: dict[str, Tensor], **_: Any) -> Tensor:
         """Choose an action in every environment of the batch.
 
         Args:
-            batch: The observation; `observation.instances` is (B, N, 13) or flat.
+            batch: The observation; `observation.instances` is (B, N, D) or flat.
             **_: Further arguments of LeRobot.
 
         Returns:
             The chosen rows' poses, (B, 7).
         """
         sets = [instances.unpad(padded) for padded in batch[OBS_INSTANCES].cpu().numpy()]
-        if self.config.rule == "random":
-            rows = [_random_row(rows) for rows in sets]
-        else:
-            self._begin(batch, len(sets))
-            rows = [self._row(i, rows) for i, rows in enumerate(sets)]
+        if not self._choosers:  # an episode's first decision: read its prompt or label
+            self._choosers = choosers_of(self.config.rule, batch, len(sets))
+        rows = [choose_row(rows) for choose_row, rows in zip(self._choosers, sets, strict=True)]
         poses = [rows_[row, instances.POSE] for rows_, row in zip(sets, rows, strict=True)]
         return torch.from_numpy(np.stack(poses))
-
-    def _begin(self, batch: dict[str, Tensor], size: int) -> None:
-        """At an episode's first decision, read each environment's prompt or label."""
-        if not self._inferences:
-            self._inferences = INFERENCES[self.config.rule](batch, size)
-            self._memories = [Memory() for _ in range(size)]
-
-    def _row(self, i: int, rows: np.ndarray) -> int:
-        # Only the symbolic rule ignores closed racks: it acts on what is visible.
-        view = ObservedView(rows, None if self.config.rule == "symbolic" else self._memories[i])
-        return choose(view, self._inferences[i](view))
 
     def predict_action_chunk(self, batch: dict[str, Tensor], **_: Any) -> Tensor:
         """The action as a chunk of one, (B, 1, 7)."""
@@ -92,6 +83,47 @@ class RulesPolicy(PreTrainedPolicy):
             ValueError: Always.
         """
         raise ValueError("A rule is not trained; use it with --policy.type=rules --policy.rule=...")
+
+
+class PreferenceFollower:
+    """Chooses in one episode as the first tier's expert would.
+
+    Args:
+        inference: Says of which preference.
+        memory: The state of closed racks; None ignores them.
+    """
+
+    def __init__(self, inference: Inference, memory: Memory | None) -> None:
+        self._inference = inference
+        self._memory = memory
+
+    def __call__(self, rows: np.ndarray) -> int:
+        """The row to choose.
+
+        Args:
+            rows: The instance set, (n, 13), unpadded.
+        """
+        view = ObservedView(rows, self._memory)
+        return choose(view, self._inference(view))
+
+
+def choosers_of(rule: str, batch: dict[str, Tensor], size: int) -> list[Chooser]:
+    """What chooses in each of the batch's episodes, from their first observation."""
+    if rule == "random":
+        return [_random_row] * size
+    if rule in PEOPLE_RULES:
+        return _people(rule, batch)
+    # Only the symbolic rule ignores closed racks: it acts on what is visible.
+    return [
+        PreferenceFollower(inference, None if rule == "symbolic" else Memory())
+        for inference in INFERENCES[rule](batch, size)
+    ]
+
+
+def _people(rule: str, batch: dict[str, Tensor]) -> list[Chooser]:
+    evenings = batch[OBS_STATE][:, -1].int().tolist()
+    shown = [what_is_shown(*one) for one in zip(_prompts(batch), evenings, strict=True)]
+    return [PlanFollower(partial(PEOPLE_RULES[rule], one)) for one in shown]
 
 
 def _random_row(rows: np.ndarray) -> int:
@@ -131,7 +163,7 @@ def _expert(batch: dict[str, Tensor], size: int) -> list[Inference]:
 
 
 def _prompts(batch: dict[str, Tensor]) -> np.ndarray:
-    return batch[OBS_PROMPT].cpu().numpy()  # (B, R, 14)
+    return batch[OBS_PROMPT].cpu().numpy()  # (B, R, D + 1)
 
 
 INFERENCES: dict[str, Callable[[dict[str, Tensor], int], list[Inference]]] = {

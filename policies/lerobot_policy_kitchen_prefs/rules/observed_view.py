@@ -31,8 +31,8 @@ class ObservedView:
         self._rows = rows
         self._poses = rows[:, instances.POSE]  # (n, 7)
         self._category = nearest_category(rows, EXTENTS)  # (n,)
-        self.door, self.door_open = self._find(DOOR_ROWS)
-        found = {rack: self._find(RACK_ROWS[rack]) for rack in RACKS}
+        self.door, self.door_open = find_object(rows, DOOR_ROWS)
+        found = {rack: find_object(rows, RACK_ROWS[rack]) for rack in RACKS}
         self.racks = {rack: row for rack, (row, _) in found.items()}
         self.open_rack = next((rack for rack, (_, out) in found.items() if out), None)
         places = np.flatnonzero(rows[:, instances.IS_PLACE] > 0)
@@ -85,17 +85,6 @@ class ObservedView:
         rows = np.flatnonzero(mask & (self._rows[:, instances.IS_OBJECT] > 0))
         return rows[~np.isin(rows, [self.door, *self.racks.values()])]
 
-    def _find(self, states: list[np.ndarray]) -> tuple[int, bool]:
-        """The row of the door or a rack, and whether it is in the second of its two states."""
-        for second, state in enumerate(states):
-            same = (self._rows[:, : instances.DECISION] == state[: instances.DECISION]).all(axis=1)
-            if same.any():
-                return int(np.flatnonzero(same)[0]), bool(second)
-        raise ValueError(
-            "The instance set lacks the door or a rack; take it from an environment of "
-            "kitchen_prefs."
-        )
-
     def _blocked_in(self, rack: str) -> np.ndarray:
         table = placement_table()
         taken = [
@@ -105,7 +94,29 @@ class ObservedView:
         return np.any(table.blocks[taken], axis=0)
 
     def _placement_at(self, pose: np.ndarray, among: np.ndarray) -> int:
-        """The placement of the rack that is out with a dish's pose."""
         assert self.open_rack is not None
-        poses = placement_table().pose[self.open_rack][among]
-        return int(among[np.abs(poses - pose).sum(axis=1).argmin()])
+        return placement_at(pose, placement_table().pose[self.open_rack], among)
+
+
+def find_object(rows: np.ndarray, states: list[np.ndarray]) -> tuple[int, bool]:
+    """The row of the door or a rack, and whether it is in the second of its two states.
+
+    Args:
+        rows: The instance set, (n, D).
+        states: Its row in both states.
+
+    Raises:
+        ValueError: If the set lacks it.
+    """
+    for second, state in enumerate(states):
+        same = (rows[:, : instances.DECISION] == state[: instances.DECISION]).all(axis=1)
+        if same.any():
+            return int(np.flatnonzero(same)[0]), bool(second)
+    raise ValueError(
+        "The instance set lacks the door or a rack; take it from an environment of kitchen_prefs."
+    )
+
+
+def placement_at(pose: np.ndarray, poses: np.ndarray, among: np.ndarray) -> int:
+    """The placement with a dish's pose, (7,), among some, (k,) int, of a rack's, (P, 7)."""
+    return int(among[np.abs(poses[among] - pose).sum(axis=1).argmin()])

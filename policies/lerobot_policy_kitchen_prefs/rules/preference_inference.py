@@ -15,15 +15,15 @@ def decisions_of(prompt: np.ndarray) -> Iterator[tuple[np.ndarray, int]]:
     """Split a prompt into decisions.
 
     Args:
-        prompt: (P, 14), padded.
+        prompt: (P, D + 1), padded; the last column marks the chosen rows.
 
     Yields:
-        The instance set of each decision, (n, 13), and its chosen row.
+        The instance set of each decision, (n, D), and its chosen row.
     """
     rows = instances.unpad(prompt)
     starts = np.flatnonzero(np.diff(rows[:, instances.DECISION], prepend=-1))
     for part in np.split(rows, starts[1:]):
-        yield part[:, : instances.COLUMNS], int(part[:, instances.CHOSEN].argmax())
+        yield part[:, :-1], int(part[:, -1].argmax())
 
 
 def symbolic_preference(prompt: np.ndarray) -> Preference:
