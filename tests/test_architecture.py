@@ -26,7 +26,7 @@ BENCHMARK = {
     "simulation": "preferences splits",
     "people": "preferences simulation utils",
     "physics": "people preferences simulation splits utils",
-    "rendering": "physics preferences simulation utils",
+    "rendering": "people physics preferences simulation utils",
     "envs": "instances metrics people preferences rendering simulation splits utils",
     "datasets": "envs instances metrics preferences rendering simulation splits utils",
     "evaluation": "datasets envs metrics people simulation splits utils",

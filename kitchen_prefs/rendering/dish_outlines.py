@@ -39,8 +39,8 @@ class Outline:
     inside: bool
 
 
-def outline(category: str, pose: np.ndarray) -> Outline:
-    """A dish of a category in a pose, (7,)."""
+def outline(category: str, pose: np.ndarray, scale: float = 1.0) -> Outline:
+    """A dish of a category in a pose, (7,), so much larger than its category's extents."""
     rings, opening, foot = RINGS[category.split()[-1]]
     turn = Rotation.from_quat(pose[3:], scalar_first=True)
     inside = bool(turn.apply((0.0, 0.0, 1.0))[2] > 0)
@@ -48,8 +48,8 @@ def outline(category: str, pose: np.ndarray) -> Outline:
     solids = [*([_handle()] if category == "cup" else []), silhouette]
     mark = _ring(category, *(opening if inside else foot))  # (m, 3)
     return Outline(
-        parts=tuple(_hull(turn.apply(solid)[:, :2] + pose[:2]) for solid in solids),
-        mark=turn.apply(mark)[:, :2] + pose[:2],
+        parts=tuple(_hull(turn.apply(scale * solid)[:, :2] + pose[:2]) for solid in solids),
+        mark=turn.apply(scale * mark)[:, :2] + pose[:2],
         inside=inside,
     )
 

@@ -8,15 +8,36 @@ from scipy.spatial.transform import Rotation
 
 from kitchen_prefs.preferences import CATEGORIES
 from kitchen_prefs.rendering.dishwasher import add_dishwasher
+from kitchen_prefs.rendering.finishes import add_finishes
 from kitchen_prefs.rendering.meshes import add_surface
 from kitchen_prefs.rendering.parts import add_materials
 from kitchen_prefs.rendering.room import add_room
 from kitchen_prefs.rendering.tableware import surface
 
-CAMERA = "kitchen"
-CAMERA_POSITION = (0.86, -3.05, 2.02)
-CAMERA_TARGET = (-0.62, 0.10, 0.68)
-FIELD_OF_VIEW = 41.0  # degrees, vertical: the view of somebody who stands before the kitchen
+
+@dataclass(frozen=True)
+class View:
+    """What a camera sees.
+
+    Attributes:
+        position: The camera's, (3,) m.
+        target: What is in the middle of the picture, (3,) m.
+        angle: Its field of view, degrees, vertical.
+    """
+
+    position: tuple[float, float, float]
+    target: tuple[float, float, float]
+    angle: float
+
+
+# The whole kitchen as somebody sees it who stands before it: all of the counter, and into both
+# racks; and from above, each rack when it is out, and the sink.
+VIEWS = {
+    "kitchen": View((0.86, -3.05, 2.02), (-0.62, 0.10, 0.68), 41.0),
+    "bottom": View((0.0, -0.75, 1.25), (0.0, -0.29, 0.22), 36.0),
+    "top": View((0.0, -0.75, 1.58), (0.0, -0.29, 0.55), 36.0),
+    "sink": View((-0.75, -0.10, 1.75), (-0.75, 0.31, 0.82), 36.0),
+}
 
 
 @dataclass(frozen=True)
@@ -41,7 +62,8 @@ def kitchen_spec(quality: Quality) -> mujoco.MjSpec:
         quality: What a frame may cost.
 
     Returns:
-        The specification. It has a mesh named after each category, which no body uses.
+        The specification. It has a mesh named after each category, and those of `finishes`, which
+        no body uses.
     """
     spec = mujoco.MjSpec()
     spec.compiler.degree = False
@@ -56,8 +78,10 @@ def kitchen_spec(quality: Quality) -> mujoco.MjSpec:
     add_dishwasher(spec)
     for category in CATEGORIES:
         add_surface(spec, category, surface(category, 2 * quality.sides))
+    add_finishes(spec, 2 * quality.sides)
     _add_lights(spec, quality.shadows > 0)
-    _add_camera(spec)
+    for name, view in VIEWS.items():
+        _add_camera(spec, name, view)
     return spec
 
 
@@ -86,15 +110,11 @@ def _add_lights(spec: mujoco.MjSpec, shadows: bool) -> None:
     )
 
 
-def _add_camera(spec: mujoco.MjSpec) -> None:
-    """The view from the front right: all of the counter, and into both racks."""
-    ahead = np.subtract(CAMERA_TARGET, CAMERA_POSITION)
+def _add_camera(spec: mujoco.MjSpec, name: str, view: View) -> None:
+    ahead = np.subtract(view.target, view.position)
     across = np.cross(ahead, (0.0, 0.0, 1.0))
     axes = np.stack([across, np.cross(across, ahead), -ahead], axis=1)  # a camera looks along -z
     turn = Rotation.from_matrix(axes / np.linalg.norm(axes, axis=0))
     spec.worldbody.add_camera(
-        name=CAMERA,
-        pos=CAMERA_POSITION,
-        quat=turn.as_quat(scalar_first=True),
-        fovy=FIELD_OF_VIEW,
+        name=name, pos=view.position, quat=turn.as_quat(scalar_first=True), fovy=view.angle
     )

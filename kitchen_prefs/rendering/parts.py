@@ -35,17 +35,23 @@ def add_materials(spec: mujoco.MjSpec) -> None:
     for name, (colour, specular, shininess) in MATERIALS.items():
         spec.add_material(name=name, rgba=(*colour, 1.0), specular=specular, shininess=shininess)
     for name, (draw, _, specular, shininess) in TEXTURED.items():
-        image = draw()
-        texture = spec.add_texture(
-            name=name,
-            type=mujoco.mjtTexture.mjTEXTURE_2D,
-            height=image.shape[0],
-            width=image.shape[1],
-            nchannel=3,
-        )
-        texture.data = image.tobytes()
-        material = spec.add_material(name=name, specular=specular, shininess=shininess)
-        material.textures[mujoco.mjtTextureRole.mjTEXROLE_RGB] = name
+        add_textured_material(spec, name, draw(), specular, shininess)
+
+
+def add_textured_material(
+    spec: mujoco.MjSpec, name: str, image: np.ndarray, specular: float, shininess: float
+) -> None:
+    """Add a material with a texture, (H, W, 3) uint8."""
+    texture = spec.add_texture(
+        name=name,
+        type=mujoco.mjtTexture.mjTEXTURE_2D,
+        height=image.shape[0],
+        width=image.shape[1],
+        nchannel=3,
+    )
+    texture.data = image.tobytes()
+    material = spec.add_material(name=name, specular=specular, shininess=shininess)
+    material.textures[mujoco.mjtTextureRole.mjTEXROLE_RGB] = name
 
 
 def add_box(

@@ -1,9 +1,9 @@
 """A plan of the kitchen before a decision: counter, racks, dishes, and what the decision chooses.
 
 It needs no MuJoCo. The racks are drawn larger, beneath the counter; beside each stands what the
-user wants in it, in order. The chosen instance has a ring. A dish in hand has an orange edge, an
-arrow leads to its place, and dots are the free placements. Dishes in a rack that is in are pale: a
-policy does not see them.
+user wants in it, in order, or, in the second tier, how its dishes look. The chosen instance has a
+ring. A dish in hand has an orange edge, an arrow leads to its place, and dots are the free
+placements. Dishes in a rack that is in are pale: a policy does not see them.
 """
 
 import numpy as np
@@ -12,6 +12,9 @@ from kitchen_prefs.preferences import CATEGORIES, RACKS, Preference
 from kitchen_prefs.rendering import plan_ground as ground
 from kitchen_prefs.rendering.canvas import Canvas
 from kitchen_prefs.rendering.dish_outlines import Outline, outline, surround
+from kitchen_prefs.rendering.plan_dishes import draw_dish
+from kitchen_prefs.rendering.plan_lists import TINT, draw_legend, draw_order
+from kitchen_prefs.rendering.state import looks_of
 from kitchen_prefs.simulation.kitchen import (
     DOOR,
     FIRST_DISH,
@@ -21,36 +24,20 @@ from kitchen_prefs.simulation.kitchen import (
     SINK,
     Kitchen,
     Location,
-    placement_table,
 )
 
-# The colours of the leaderboard's page.
-GLAZES = {
-    "cup": "#c8402f",
-    "glass": "#a9d8d6",
-    "tray": "#8a4b1f",
-    "small bowl": "#2c6cb0",
-    "big bowl": "#5b8a45",
-    "small plate": "#93bfe6",
-    "big plate": "#fbf7ea",
-}
-EDGE, MARK, INSIDE, SHADOW = "#2a2f2c", (42, 47, 44, 150), (0, 0, 0, 40), (60, 45, 20, 70)
-SHADOW_OFFSET = np.array([1.5, 2.5])  # pixels
-RING, HALO, TINT, PALE = "#e8590c", "#fffdf8", "#fbdcc4", (233, 227, 213, 150)
-UPRIGHT = np.array([0, 0, 0, 1, 0, 0, 0])
+RING, HALO, PALE = "#e8590c", "#fffdf8", (233, 227, 213, 150)
 RING_DISTANCE = 7  # pixels from the dish
-LIST_SCALE = 90  # pixels a metre, of the dishes in the lists beside the racks
-LIST_STEP = 36  # pixels from one to the next
 
 
 def draw_plan(
-    kitchen: Kitchen, preference: Preference, instance: int, number: int, count: int
+    kitchen: Kitchen, preference: Preference | None, instance: int, number: int, count: int
 ) -> np.ndarray:
     """Draw the kitchen before a decision.
 
     Args:
         kitchen: The kitchen, which is not changed.
-        preference: The user's.
+        preference: The user's; None in the second tier, whose users have none.
         instance: What the decision chooses.
         number: The number of the decision, from 0.
         count: How many decisions the episode has.
@@ -67,7 +54,10 @@ def draw_plan(
     _draw_dishes(canvas, kitchen)
     _draw_choice(canvas, kitchen, instance)
     for rack in RACKS:
-        _draw_order(canvas, rack, preference, _category_at_issue(kitchen, instance))
+        if preference is None:
+            draw_legend(canvas, rack)
+        else:
+            draw_order(canvas, rack, preference, _category_at_issue(kitchen, instance))
     return canvas.picture()
 
 
@@ -88,6 +78,12 @@ def _category(kitchen: Kitchen, dish: int) -> str:
     return CATEGORIES[kitchen.dishes.category[dish]]
 
 
+def _outline(kitchen: Kitchen, dish: int, pose: np.ndarray) -> Outline:
+    """A dish of the kitchen in a pose, (7,)."""
+    look = looks_of(kitchen)[dish]
+    return outline(_category(kitchen, dish), pose, look.scale if look else 1.0)
+
+
 def _category_at_issue(kitchen: Kitchen, instance: int) -> str | None:
     """The category of the dish that is picked or placed."""
     if kitchen.held is not None:
@@ -101,22 +97,14 @@ def _rack_of(placement: int) -> str:
 
 def _draw_dishes(canvas: Canvas, kitchen: Kitchen) -> None:
     areas = {Location.COUNTER: ground.COUNTER} | {IN_RACK[r]: ground.RACK_AREAS[r] for r in RACKS}
+    looks = looks_of(kitchen)
     for dish in np.argsort(kitchen.pose[:, 2]).tolist():  # the lowest first
         area = areas.get(Location(kitchen.location[dish]))
         if area is not None:
-            category = _category(kitchen, dish)
-            _draw_dish(canvas, area, category, outline(category, kitchen.pose[dish]))
+            draw_dish(canvas, area, _category(kitchen, dish), kitchen.pose[dish], looks[dish])
     for rack in RACKS:
         if kitchen.open_rack != rack:
             canvas.rectangle(ground.RACK_AREAS[rack].box, PALE, radius=6)
-
-
-def _draw_dish(canvas: Canvas, area: ground.Area, category: str, shape: Outline) -> None:
-    for part in shape.parts:
-        canvas.polygon(area.place(part) + SHADOW_OFFSET, SHADOW)
-    for part in shape.parts:
-        canvas.polygon(area.place(part), GLAZES[category], EDGE)
-    canvas.polygon(area.place(shape.mark), INSIDE if shape.inside else None, MARK)
 
 
 def _draw_choice(canvas: Canvas, kitchen: Kitchen, instance: int) -> None:
@@ -128,17 +116,16 @@ def _draw_choice(canvas: Canvas, kitchen: Kitchen, instance: int) -> None:
         _ring_box(canvas, ground.RACK_AREAS[RACK_OF_INSTANCE[instance]].box)
     else:
         dish = instance - FIRST_DISH
-        _ring(canvas, ground.COUNTER, outline(_category(kitchen, dish), kitchen.pose[dish]))
+        _ring(canvas, ground.COUNTER, _outline(kitchen, dish, kitchen.pose[dish]))
 
 
 def _draw_placing(canvas: Canvas, kitchen: Kitchen, held: int, instance: int) -> None:
     """The dish in hand, the free placements, and the place that is chosen."""
-    category = _category(kitchen, held)
-    for part in outline(category, kitchen.pose[held]).parts:
+    for part in _outline(kitchen, held, kitchen.pose[held]).parts:
         canvas.polygon(ground.COUNTER.place(part), None, RING, 2.5)
     start = ground.COUNTER.place(kitchen.pose[held, :2])
     if kitchen.open_rack is not None:
-        area, poses = ground.RACK_AREAS[kitchen.open_rack], placement_table().pose
+        area, poses = ground.RACK_AREAS[kitchen.open_rack], kitchen.table.pose
         free = kitchen.free(kitchen.open_rack, int(kitchen.dishes.category[held]))
         for pose in poses[kitchen.open_rack][free]:
             canvas.circle(area.place(pose[:2]), 2.5, ground.GREEN)
@@ -147,8 +134,8 @@ def _draw_placing(canvas: Canvas, kitchen: Kitchen, held: int, instance: int) ->
         _arrow(canvas, start, ground.SINK.centre)
         return
     rack = _rack_of(instance)
-    pose = placement_table().pose[rack][instance - FIRST_PLACEMENT[rack]]
-    shape = outline(category, pose)
+    pose = kitchen.table.pose[rack][instance - FIRST_PLACEMENT[rack]]
+    shape = _outline(kitchen, held, pose)
     for part in shape.parts:
         canvas.polygon(ground.RACK_AREAS[rack].place(part), TINT, RING, 1.5)
     ring = _ring(canvas, ground.RACK_AREAS[rack], shape)
@@ -175,17 +162,3 @@ def _arrow(canvas: Canvas, start: np.ndarray, end: np.ndarray) -> None:
     canvas.line(np.stack([start, neck]), HALO, 5)
     canvas.line(np.stack([start, neck]), RING, 2.5)
     canvas.polygon(np.stack([end, neck + 6 * across, neck - 6 * across]), RING)
-
-
-def _draw_order(canvas: Canvas, rack: str, preference: Preference, at_issue: str | None) -> None:
-    """What the user wants in a rack, in order, beside it."""
-    _, top, right, _ = ground.RACK_AREAS[rack].box
-    nth = "first" if preference.first == rack else "second"
-    canvas.text((right + 12, top + 6), f"load {nth}", 13, ground.SOFT, "lm")
-    for place, category in enumerate(preference.order(rack)):
-        y = top + 38 + LIST_STEP * place
-        if category == at_issue:
-            canvas.rectangle((right + 8, y - 15, right + 106, y + 15), TINT, radius=6)
-        swatch = ground.Area((0.0, 0.0), (0.0, 0.0), (right + 26, y), LIST_SCALE)
-        _draw_dish(canvas, swatch, category, outline(category, UPRIGHT))
-        canvas.text((right + 43, y), category, 12.5, ground.INK, "lm")

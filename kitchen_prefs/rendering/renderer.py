@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 
 from kitchen_prefs.preferences import RACKS
 from kitchen_prefs.rendering.opengl import NoOpenGLError, open_context
-from kitchen_prefs.rendering.state import SceneState
+from kitchen_prefs.rendering.state import SceneDish, SceneState
 from kitchen_prefs.simulation.layout import DOOR_OPEN_ANGLE, RACK_TRAVEL, SINK_POSITION, SINK_SIZE
 from kitchen_prefs.utils.extras import require_mujoco
 
@@ -20,14 +20,14 @@ except (ImportError, AttributeError) as error:  # with MUJOCO_GL set it loads Op
     raise NoOpenGLError from error
 
 from kitchen_prefs.rendering.dishwasher import DOOR_JOINT, rack_joint
-from kitchen_prefs.rendering.kitchen_model import CAMERA, Quality, kitchen_spec
-from kitchen_prefs.rendering.tableware import GLAZES, TRAY_MATERIAL, colour
+from kitchen_prefs.rendering.finishes import Layer, layers
+from kitchen_prefs.rendering.kitchen_model import VIEWS, Quality, kitchen_spec
 
 QUALITIES = {
     "fast": Quality(samples=0, shadows=0, sides=8),  # for watching a rollout
     "fine": Quality(samples=8, shadows=4096, sides=28),  # for figures
 }
-MOST_GEOMS = 1000  # in a frame: the furniture has 300, a session at most twenty dishes
+MOST_GEOMS = 1000  # in a frame: the furniture has 300, each of at most 24 dishes three
 SINK_PILE = 0.03  # m that each further dish in the sink lies higher
 
 
@@ -38,15 +38,18 @@ class Renderer:
         width: Of the picture, in pixels.
         height: Of the picture, in pixels.
         quality: "fast" (about 30 ms a frame) or "fine" (with shadows, for figures).
+        view: What is in sight, one of `kitchen_model.VIEWS`: "kitchen", a rack or "sink".
 
     Raises:
-        ValueError: If the quality is neither.
+        ValueError: If there is no such quality or view.
         NoOpenGLError: If there is no OpenGL library to draw with.
     """
 
-    def __init__(self, width: int, height: int, quality: str) -> None:
+    def __init__(self, width: int, height: int, quality: str, view: str = "kitchen") -> None:
         if quality not in QUALITIES:
             raise ValueError(f"A picture's quality is one of {sorted(QUALITIES)}, not {quality!r}.")
+        if view not in VIEWS:
+            raise ValueError(f"A picture's view is one of {sorted(VIEWS)}, not {view!r}.")
         spec = kitchen_spec(QUALITIES[quality])
         spec.visual.global_.offwidth, spec.visual.global_.offheight = width, height
         self._model = spec.compile()
@@ -55,7 +58,7 @@ class Renderer:
         self._options = mujoco.MjvOption()
         self._camera = mujoco.MjvCamera()
         self._camera.type = mujoco.mjtCamera.mjCAMERA_FIXED
-        self._camera.fixedcamid = self._model.camera(CAMERA).id
+        self._camera.fixedcamid = self._model.camera(view).id
         self._frame = mujoco.MjrRect(0, 0, width, height)
         self._opengl = open_context(width, height)
         self._drawing = mujoco.MjrContext(self._model, mujoco.mjtFontScale.mjFONTSCALE_100)
@@ -102,33 +105,34 @@ class Renderer:
 
     def _arrange_dishes(self, state: SceneState) -> None:
         sunk = 0
-        for number, (category, position, quaternion) in enumerate(state.dishes):
-            place = np.asarray(position, dtype=float)
+        for number, dish in enumerate(state.dishes):
+            place = np.asarray(dish.position, dtype=float)
             if np.allclose(place, SINK_POSITION, atol=1e-4):
                 place = place + _on_the_pile(sunk)
                 sunk += 1
-            self._add_dish(number, category, place, quaternion)
+            for layer in layers(dish.category, number, dish.look):
+                self._add_layer(layer, dish, place)
 
-    def _add_dish(
-        self, number: int, category: str, position: np.ndarray, quaternion: np.ndarray
-    ) -> None:
-        """Append a dish to the frame, at the frame of its mesh, which MuJoCo has moved."""
-        mesh = self._model.mesh(category).id
-        turn = Rotation.from_quat(quaternion, scalar_first=True)
+    def _add_layer(self, layer: Layer, dish: SceneDish, position: np.ndarray) -> None:
+        """Append a layer of a dish to the frame, where its mesh is, which MuJoCo has moved."""
+        mesh = self._model.mesh(layer.mesh).id
+        scale = dish.look.scale if dish.look else 1.0
+        turn = Rotation.from_quat(dish.quaternion, scalar_first=True)
         own_turn = Rotation.from_quat(self._model.mesh_quat[mesh], scalar_first=True)
         geom = self._scene.geoms[self._scene.ngeom]
         mujoco.mjv_initGeom(
             geom,
             type=mujoco.mjtGeom.mjGEOM_MESH,
             size=np.ones(3),
-            pos=position + turn.apply(self._model.mesh_pos[mesh]),
-            mat=(turn * own_turn).as_matrix().ravel(),
-            rgba=np.array(colour(category, number), dtype=np.float32),
+            pos=position + scale * turn.apply(self._model.mesh_pos[mesh]),
+            mat=(scale * (turn * own_turn).as_matrix()).ravel(),
+            rgba=np.array(layer.rgba, dtype=np.float32),
         )
         geom.dataid = 2 * mesh  # even numbers are meshes, odd ones their convex hulls
-        geom.specular, geom.shininess = GLAZES[category].specular, GLAZES[category].shininess
-        if category == "tray":
-            geom.matid, geom.texcoord = self._model.material(TRAY_MATERIAL).id, 1
+        geom.specular, geom.shininess = layer.specular, layer.shininess
+        geom.emission = layer.emission
+        if layer.texture is not None:
+            geom.matid, geom.texcoord = self._model.material(layer.texture).id, 1
         self._scene.ngeom += 1
 
 

@@ -22,6 +22,13 @@ def beech() -> np.ndarray:
     return _planks((232, 204, 170), rows=1, tones=0.0, joints=1.0, seed=SEED + 3)
 
 
+def ash() -> np.ndarray:
+    """One pale board with dark growth rings, for wooden dishes, (SIZE, SIZE, 3) uint8."""
+    rings = _streaks(np.random.default_rng(SEED + 4), SIZE, 20.0)
+    years = 12 * np.linspace(0, 1, SIZE, endpoint=False)[:, None] + 0.6 * rings
+    return _painted(1.0 - 0.35 * np.maximum(np.sin(2 * np.pi * years), 0.0) ** 2, (226, 186, 130))
+
+
 def tiles() -> np.ndarray:
     """White metro tiles, twice as wide as high, in a running bond, (SIZE, SIZE, 3) uint8."""
     rows, columns, joint = 8, 4, 4

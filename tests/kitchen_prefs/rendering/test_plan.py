@@ -5,7 +5,8 @@ import pytest
 from PIL import ImageColor
 
 from kitchen_prefs.preferences import CATEGORIES
-from kitchen_prefs.rendering.plan import GLAZES, RING, draw_plan, in_words
+from kitchen_prefs.rendering.plan import RING, draw_plan, in_words
+from kitchen_prefs.rendering.plan_dishes import GLAZES
 from kitchen_prefs.rendering.plan_ground import (
     CARD,
     COUNTER,

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from kitchen_prefs.rendering.renderer import Renderer
-from kitchen_prefs.rendering.state import SceneState
+from kitchen_prefs.rendering.state import SceneDish, SceneState
 from kitchen_prefs.simulation.layout import COUNTER_HEIGHT, SINK_POSITION
 
 pytestmark = pytest.mark.xdist_group("renderer")  # one fixture of the module serves all
@@ -52,7 +52,7 @@ def test_door_and_racks_show(renderer):
 def test_a_dish_shows_where_it_stands(renderer):
     position = np.array([-1.6, 0.3, COUNTER_HEIGHT + 0.05])
     empty = renderer.render(SceneState())
-    laid = renderer.render(SceneState(dishes=(("big bowl", position, UPRIGHT),)))
+    laid = renderer.render(SceneState(dishes=(SceneDish("big bowl", position, UPRIGHT),)))
     rows, columns = np.nonzero(np.abs(laid.astype(int) - empty).max(axis=-1) > 20)
     assert len(rows) > 50
     assert columns.max() < 160  # left of the sink is the left half of the picture
@@ -60,7 +60,7 @@ def test_a_dish_shows_where_it_stands(renderer):
 
 
 def test_two_dishes_in_the_sink_are_both_seen(renderer):
-    sunk = ("big plate", np.array(SINK_POSITION), UPRIGHT)
+    sunk = SceneDish("big plate", np.array(SINK_POSITION), UPRIGHT)
     one = renderer.render(SceneState(dishes=(sunk,)))
     two = renderer.render(SceneState(dishes=(sunk, sunk)))
     assert changed(one, two) > 0
