@@ -71,7 +71,8 @@ EXPERIMENTS = {
         "kitchen_prefs.metrics kitchen_prefs.simulation kitchen_prefs.utils"
     ),
     "people": (
-        "markdown kitchen_prefs.envs kitchen_prefs.metrics kitchen_prefs.people kitchen_prefs.utils"
+        "markdown kitchen_prefs.envs kitchen_prefs.metrics kitchen_prefs.people "
+        "kitchen_prefs.rendering kitchen_prefs.simulation kitchen_prefs.utils"
     ),
     "paper": (
         "checkpoints lerobot_train markdown recipes kitchen_prefs.datasets "

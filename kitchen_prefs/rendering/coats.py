@@ -9,7 +9,7 @@ from kitchen_prefs.simulation.layout import EXTENTS
 
 RIM_LIFT, STAIN_LIFT = 0.0006, 0.0012  # m above the dish: stains lie on rims, too
 STAINS = 14  # on a dish
-STAIN_RADII = (0.06, 0.15)  # by the dish's shorter side
+STAIN_RADII = (0.035, 0.085)  # by the root of the dish's area
 STAIN_SEED = 17
 WAVE_LENGTH, WAVE_HEIGHT = 0.008, 0.09  # of the stains' edges: m, and a share of the radius
 
@@ -33,10 +33,10 @@ def rim(category: str, dish: Surface, share: float) -> Surface:
 def stains(category: str, dish: Surface) -> Surface:
     """Stains all over a dish's surface, drawn by a seed; through a wall they meet."""
     generator = np.random.default_rng([STAIN_SEED, *category.encode()])
-    areas = np.linalg.norm(_normals(dish), axis=1)  # (F,)
+    areas = np.linalg.norm(_normals(dish), axis=1) / 2  # (F,)
     chosen = generator.choice(len(areas), STAINS, p=areas / areas.sum())
     centres = dish.vertices[dish.faces[chosen]].mean(axis=1)  # (STAINS, 3)
-    radii = generator.uniform(*STAIN_RADII, STAINS) * min(EXTENTS[category][:2])
+    radii = generator.uniform(*STAIN_RADII, STAINS) * np.sqrt(areas.sum())
     distance = np.linalg.norm(dish.vertices[:, None] - centres, axis=-1)  # (V, STAINS)
     waves = np.sin(dish.vertices / WAVE_LENGTH).sum(axis=1)  # (V,)
     inside = (1 - distance / radii).max(axis=1) + WAVE_HEIGHT * waves

@@ -1,1 +1,1 @@
-"""The second tier's tables: what simple readers of a user's demonstrations reach."""
+"""The second tier's tables, what simple readers of demonstrations reach, and its figure."""

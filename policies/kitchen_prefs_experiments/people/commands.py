@@ -1,4 +1,4 @@
-"""`kitchen-prefs people`: the tables of the second tier."""
+"""`kitchen-prefs people`: the tables and the figure of the second tier."""
 
 from dataclasses import asdict
 from pathlib import Path
@@ -44,3 +44,22 @@ def show_ladder(
     with atomic_file(out / "ladder.md") as unfinished:
         unfinished.write_text(page)
     typer.echo(page)
+
+
+@app.command("figure")
+def draw_figure(
+    out: Annotated[Path, typer.Option(help="The picture, a PNG file.")],
+) -> None:
+    """Four users' racks and sinks after each has loaded the same dishes, under their rules.
+
+    Example: kitchen-prefs people figure --out=docs/people.png
+    """
+    from kitchen_prefs_experiments.people.figure import draw_users
+
+    if out.suffix != ".png":
+        raise ValueError(f"The picture is a PNG file, but --out is {out}; give a name with .png.")
+    make_folder(out.parent, "--out")
+    figure = draw_users()
+    with atomic_file(out) as unfinished:
+        figure.save(unfinished, optimize=True)
+    typer.echo(f"{out}: four users, the same dishes.")

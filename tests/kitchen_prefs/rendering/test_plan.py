@@ -4,9 +4,12 @@ import numpy as np
 import pytest
 from PIL import ImageColor
 
+from kitchen_prefs.people.attributes import MATERIALS
+from kitchen_prefs.people.sessions import make_people_session, people_table
 from kitchen_prefs.preferences import CATEGORIES
+from kitchen_prefs.rendering.canvas import Canvas
 from kitchen_prefs.rendering.plan import RING, draw_plan, in_words
-from kitchen_prefs.rendering.plan_dishes import GLAZES
+from kitchen_prefs.rendering.plan_dishes import GLAZES, draw_dish
 from kitchen_prefs.rendering.plan_ground import (
     CARD,
     COUNTER,
@@ -15,7 +18,10 @@ from kitchen_prefs.rendering.plan_ground import (
     SHADE,
     SINK,
     WOOD,
+    Area,
 )
+from kitchen_prefs.rendering.plan_lists import UPRIGHT
+from kitchen_prefs.rendering.state import Look
 from kitchen_prefs.simulation import kitchen as numbers
 from kitchen_prefs.simulation.kitchen import Kitchen, placement_table
 from kitchen_prefs.simulation.sessions import expert_trajectory, make_session
@@ -126,3 +132,40 @@ def test_the_words_tell_the_whole_demonstration():
     picks = [words for words in told if words.startswith("picks")]
     assert len(picks) == len(SESSION.dishes.category)
     assert told[2] == f"picks a {SESSION.preference.order(SESSION.preference.first)[0]}"
+
+
+def dish_of(look):
+    """A bowl of the second tier on white ground, (80, 80, 3) int."""
+    canvas = Canvas(80, 80, "white")
+    draw_dish(canvas, Area((0.0, 0.0), (0.0, 0.0), (40, 40), 360), "small bowl", UPRIGHT, look)
+    return canvas.picture().astype(int)
+
+
+def test_bowls_of_the_second_tier_differ_by_material_colour_soil_and_size():
+    looks = [
+        *(Look(material, "blue") for material in MATERIALS),
+        *(Look("plastic", colour) for colour in ("white", "red", "green")),
+        Look("plastic", "blue", greasy=True),
+        Look("plastic", "blue", scale=0.85),
+    ]
+    drawn = [dish_of(look) for look in looks]
+    for first in range(len(looks)):
+        for second in range(first):
+            different = np.abs(drawn[first] - drawn[second]).max(axis=-1) > 30
+            assert different.mean() > 0.03, (looks[first], looks[second])
+
+
+def test_a_plan_of_the_second_tier_has_a_legend_instead_of_an_order():
+    session = make_people_session("people_overflow", 0)
+    kitchen = Kitchen(session.dishes, people_table())
+    decisions = session.expert.trajectory.decisions
+    decision = next(i for i, one in enumerate(decisions) if one > numbers.SINK)
+    for instance in decisions[:decision]:
+        kitchen.decide(instance)
+    instance = decisions[decision]
+    picture = draw_plan(kitchen, None, instance, decision, len(decisions)).astype(int)
+    rack = "top" if instance >= numbers.FIRST_PLACEMENT["top"] else "bottom"
+    pose = people_table().pose[rack][instance - numbers.FIRST_PLACEMENT[rack]]
+    assert alike(picture[around(RACK_AREAS[rack].place(pose[:2]), radius=60)], RING).any()
+    left = round(RACK_AREAS["bottom"].box[2])
+    assert alike(picture[:, left:], "#452410").sum() > 20  # stains of the legend's greasy dish
