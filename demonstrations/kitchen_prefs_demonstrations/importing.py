@@ -16,7 +16,7 @@ from pathlib import Path
 
 import numpy as np
 
-from kitchen_prefs.datasets.names import GRAMMAR, NAMESPACE, dataset_root
+from kitchen_prefs.datasets.names import NAMESPACE, dataset_root, is_in_grammar
 from kitchen_prefs.envs.demonstrations import Demonstration, record
 from kitchen_prefs.utils.files import at_work_alone, atomic_folder, make_folder, write_json
 from kitchen_prefs_demonstrations.implied_preference import ImpliedPreference, implied_preference
@@ -88,7 +88,7 @@ def _free_root(name: str) -> Path:
         raise ValueError(
             f"A data set's name has small letters, digits, '-', '_' and '.', unlike {name!r}."
         )
-    if GRAMMAR.fullmatch(name):
+    if is_in_grammar(name):
         raise ValueError(f"{name} is the name of a published data set; give another --name.")
     root = dataset_root(name)
     if root.exists():

@@ -1,6 +1,10 @@
-"""The card of a data set: its format, its intended use and its limits."""
+"""The card of a data set: its format, its intended use and its limits.
+
+Each tier has a template, `card.md` and `people_card.md`.
+"""
 
 import io
+from collections.abc import Iterable, Mapping
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
@@ -10,11 +14,14 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from kitchen_prefs import instances
-from kitchen_prefs.datasets.columns import FEATURES, FPS, read_columns
-from kitchen_prefs.datasets.names import Content
-from kitchen_prefs.envs.observations import ENVIRONMENT_STATE, STATE
+from kitchen_prefs.datasets.columns import FPS, SETS, features_of, read_columns
+from kitchen_prefs.datasets.names import Content, data_version_of
+from kitchen_prefs.envs.observations import ENVIRONMENT_STATE
+from kitchen_prefs.people.attributes import MATERIALS
+from kitchen_prefs.people.certificates import SURE
+from kitchen_prefs.people.splits import PEOPLE_SPLITS, PEOPLE_TEST_SPLITS, PeopleSplit
 from kitchen_prefs.preferences import TWELVE
-from kitchen_prefs.splits import DATA_VERSION, SPLITS, TEST_SPLITS
+from kitchen_prefs.splits import SPLITS, TEST_SPLITS, Split
 
 
 def card_facts(manifest: dict, root: Path) -> dict[str, Any]:
@@ -41,23 +48,49 @@ def card(content: Content, facts: dict[str, Any]) -> str:
     Returns:
         The card in Markdown, with the header that the Hugging Face hub reads.
     """
-    template = (files("kitchen_prefs.datasets") / "card.md").read_text()
+    name = "people_card.md" if content.is_of_people else "card.md"
+    template = (files("kitchen_prefs.datasets") / name).read_text()
+    of_tier = _of_people(content) if content.is_of_people else _of_preferences(content)
+    features = features_of(content.name)
     return template.format(
         name=content.name,
         purpose=content.purpose,
-        version=DATA_VERSION,
+        version=data_version_of(content.name),
         fps=FPS,
         **facts,
-        preferences=_preferences(content),
-        counts=_counts(content),
-        capacity=instances.CAPACITY,
-        features=_features(),
-        state=_numbered(STATE),
+        **of_tier,
+        features=_features(features, PEOPLE_MEANINGS if content.is_of_people else MEANINGS),
+        state=_numbered(features["observation.state"]["names"]),
         environment_state=_numbered(ENVIRONMENT_STATE),
-        splits=_splits(),
-        test_splits=", ".join(f"`{name}`" for name in TEST_SPLITS),
-        noise=NOISE if any(SPLITS[split].noisy for split, _ in content.sessions) else "",
     )
+
+
+def _of_preferences(content: Content) -> dict[str, Any]:
+    """What the first tier's card says beside what both say."""
+    return {
+        "preferences": _preferences(content),
+        "counts": _counts({SPLITS[split].count(index) for split, index in content.sessions}),
+        "capacity": instances.CAPACITY,
+        "splits": _splits(content, SPLITS),
+        "test_splits": _names(TEST_SPLITS),
+        "noise": NOISE if any(SPLITS[split].noisy for split, _ in content.sessions) else "",
+    }
+
+
+def _of_people(content: Content) -> dict[str, Any]:
+    """What the second tier's card says beside what both say."""
+    counts = {PEOPLE_SPLITS[split].count(index) for split, index in content.sessions}
+    users = {(split, PEOPLE_SPLITS[split].user(index)) for split, index in content.sessions}
+    return {
+        "users": len(users),
+        "counts": _counts(counts),
+        "capacity": instances.DESCRIBED_CAPACITY,
+        "columns": instances.DESCRIBED_COLUMNS,
+        "materials": ", ".join(MATERIALS),
+        "sure": SURE,
+        "splits": _splits(content, PEOPLE_SPLITS),
+        "test_splits": _names(PEOPLE_TEST_SPLITS),
+    }
 
 
 def _preferences(content: Content) -> str:
@@ -70,9 +103,12 @@ def _preferences(content: Content) -> str:
     return " and ".join(parts)
 
 
-def _counts(content: Content) -> str:
-    counts = {SPLITS[split].count(index) for split, index in content.sessions}
+def _counts(counts: set[int]) -> str:
     return ", ".join(map(str, sorted(counts)))
+
+
+def _names(splits: Iterable[str]) -> str:
+    return ", ".join(f"`{name}`" for name in splits)
 
 
 def _bytes_a_frame(root: Path) -> dict[str, int]:
@@ -95,17 +131,16 @@ def _set_bytes(file: Path | io.BytesIO) -> int:
         for group in range(metadata.num_row_groups)
         for column in range(metadata.num_columns)
     )
-    name = "observation.instances"
-    return sum(c.total_compressed_size for c in chunks if c.path_in_schema.startswith(name))
+    return sum(c.total_compressed_size for c in chunks if c.path_in_schema.startswith(SETS))
 
 
 def _without_padding(columns: dict[str, np.ndarray]) -> io.BytesIO:
     """The instance sets as `writing` stores them, but with their own rows only."""
     file = io.BytesIO()
-    schema = pa.schema({"observation.instances": pa.list_(pa.float32())})
+    schema = pa.schema({SETS: pa.list_(pa.float32())})
     starts = np.flatnonzero(columns["frame_index"] == 0)[1:]
     with pq.ParquetWriter(file, schema, compression="snappy") as writer:
-        for padded in np.split(columns["observation.instances"], starts):  # (T, N, 13) an episode
+        for padded in np.split(columns[SETS], starts):  # (T, N, D) an episode
             sets = [instances.unpad(one) for one in padded]
             ends = np.cumsum([0, *(one.size for one in sets)], dtype=np.int32)
             column = pa.ListArray.from_arrays(ends, pa.array(np.concatenate(sets).ravel()))
@@ -114,29 +149,30 @@ def _without_padding(columns: dict[str, np.ndarray]) -> io.BytesIO:
     return file
 
 
-def _features() -> str:
+def _features(features: dict[str, dict[str, Any]], meanings: dict[str, str]) -> str:
     lines = [
         f"| `{name}` | {feature['dtype']} | {' x '.join(map(str, feature['shape']))} | "
-        f"{MEANINGS[name]} |"
-        for name, feature in FEATURES.items()
+        f"{meanings[name]} |"
+        for name, feature in features.items()
     ]
     return "\n".join(lines)
 
 
-def _numbered(names: tuple[str, ...]) -> str:
+def _numbered(names: Iterable[str]) -> str:
     return "\n".join(f"{number:5d}  {name}" for number, name in enumerate(names))
 
 
-def _splits() -> str:
+def _splits(content: Content, splits: Mapping[str, Split | PeopleSplit]) -> str:
+    version = data_version_of(content.name)
     lines = [
-        f"| `dishwasher-{name}-v{DATA_VERSION}` | {split.sessions} | {split.purpose} |"
-        for name, split in SPLITS.items()
+        f"| `dishwasher-{name}-v{version}` | {split.sessions} | {split.purpose} |"
+        for name, split in splits.items()
     ]
     return "\n".join(lines)
 
 
 MEANINGS = {
-    "observation.instances": "the visible instances, see above",
+    SETS: "the visible instances, see above",
     "observation.environment_state": "a flat summary of it, for policies that cannot read a set",
     "observation.state": "joints, category in hand, decision index",
     "action": "the pose of the chosen row: position (m), quaternion (wxyz)",
@@ -145,6 +181,11 @@ MEANINGS = {
     "next.reward": "the paper's dense reward",
     "next.done": "true at the last decision",
     "next.success": "true at the last decision: all is loaded and closed",
+}
+PEOPLE_MEANINGS = MEANINGS | {
+    "observation.state": "joints, category in hand, decision index, evening",
+    "preference": "the user's number in the split",
+    "next.reward": "whether the user would decide so, or take another dish or place alike",
 }
 
 NOISE = """

@@ -5,7 +5,8 @@
     ...
 
 `kitchen_prefs.instances` draws one instance set, whose rows stand one after the other here: all of
-LeRobot's tools take a flat column, and none all of a two-dimensional one. It has no statistics: no
+LeRobot's tools take a flat column, and none all of a two-dimensional one. In the second tier a set
+has 1596 numbers, and the state one more. A set has no statistics: no
 policy normalises a set, whose padding they would count. LeRobot adds timestamp, frame_index,
 episode_index, index and task_index.
 """
@@ -19,9 +20,11 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 
+from kitchen_prefs.datasets.names import is_of_people
 from kitchen_prefs.envs.demonstrations import Demonstration
 from kitchen_prefs.envs.observations import ENVIRONMENT_STATE, STATE
-from kitchen_prefs.instances import CAPACITY, COLUMNS, FLAT_SIZE
+from kitchen_prefs.envs.people_observations import PEOPLE_STATE
+from kitchen_prefs.instances import DESCRIBED_FLAT_SIZE, FLAT_SIZE, as_rows
 
 POSE_NAMES = ("x", "y", "z", "qw", "qx", "qy", "qz")
 FPS = 1  # a decision has no duration; with 1 a timestamp is the decision's number
@@ -46,7 +49,16 @@ FEATURES = {
     "next.done": _feature("bool", (1,), None),
     "next.success": _feature("bool", (1,), None),
 }
+PEOPLE_FEATURES = FEATURES | {
+    SETS: _feature("float32", (DESCRIBED_FLAT_SIZE,), None),
+    "observation.state": _feature("float32", (len(PEOPLE_STATE),), PEOPLE_STATE),
+}
 BOOKKEEPING = ("timestamp", "frame_index", "episode_index", "index", "task_index")
+
+
+def features_of(name: str) -> dict[str, dict[str, Any]]:
+    """The columns of a data set with a name, as LeRobot describes them."""
+    return PEOPLE_FEATURES if is_of_people(name) else FEATURES
 
 
 def columns_of(demonstration: Demonstration) -> dict[str, np.ndarray]:
@@ -57,7 +69,7 @@ def columns_of(demonstration: Demonstration) -> dict[str, np.ndarray]:
     """
     frames = len(demonstration.action)
     return {
-        SETS: demonstration.instances.reshape(frames, FLAT_SIZE),
+        SETS: demonstration.instances.reshape(frames, -1),
         "observation.environment_state": demonstration.environment_state,
         "observation.state": demonstration.state,
         "action": demonstration.action,
@@ -75,24 +87,25 @@ def with_statistics(columns: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
 
 
 def read_columns(root: Path) -> dict[str, np.ndarray]:
-    """Read all columns of a data set, in frame order.
+    """Read all columns of a data set of either tier, in frame order.
 
     Args:
         root: The data set's folder.
 
     Returns:
-        For each of FEATURES and BOOKKEEPING, (frames, ...); the sets are (frames, 72, 13).
+        For each of FEATURES and BOOKKEEPING, (frames, ...); the sets are (frames, N, D).
     """
-    table = pa.concat_tables(
-        [pq.read_table(path) for path in sorted(root.glob("data/*/*.parquet"))]
-    )
-    columns = {}
-    for name in (*FEATURES, *BOOKKEEPING):
-        shape = FEATURES[name]["shape"] if name in FEATURES else (1,)
-        shape = (CAPACITY, COLUMNS) if name == SETS else shape
-        values = flat_numbers(table[name])
-        columns[name] = values.reshape(-1, *(() if shape == (1,) else shape))
-    return columns
+    return {name: _read_column(root, name) for name in (*FEATURES, *BOOKKEEPING)}
+
+
+def _read_column(root: Path, name: str) -> np.ndarray:
+    """One column alone: beside the sets of a large data set nothing else is held twice."""
+    paths = sorted(root.glob("data/*/*.parquet"))
+    table = pa.concat_tables([pq.read_table(path, columns=[name]) for path in paths])
+    values = flat_numbers(table[name])
+    if values.size == len(table):
+        return values
+    return as_rows(values.reshape(len(table), -1))
 
 
 def read_tasks(root: Path) -> list[str]:
@@ -116,9 +129,9 @@ def fingerprint(columns: dict[str, np.ndarray], tasks: list[str]) -> str:
     """
     digest = hashlib.sha256()
     for name in sorted(columns):
-        values = columns[name].astype(columns[name].dtype.newbyteorder("<"))
+        values = columns[name].astype(columns[name].dtype.newbyteorder("<"), copy=False)
         digest.update(f"{name} {values.dtype.str} {values.shape}\n".encode())
-        digest.update(values.tobytes())
+        digest.update(values.ravel().view(np.uint8))
     digest.update("\n".join(tasks).encode())
     return digest.hexdigest()
 

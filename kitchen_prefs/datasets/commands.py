@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from kitchen_prefs.datasets.columns import FEATURES
+from kitchen_prefs.datasets.columns import features_of
 from kitchen_prefs.datasets.loading import make_dataset
 from kitchen_prefs.datasets.manifest import published_fingerprint, read_manifest
 from kitchen_prefs.datasets.names import content_of, dataset_names, dataset_root
@@ -37,9 +37,9 @@ def show(name: Name) -> None:
     content = content_of(name)
     root = dataset_root(content.name)
     typer.echo(f"{content.repo_id}: {len(content.sessions)} episodes, for {content.purpose}")
-    for column, feature in FEATURES.items():
+    for column, feature in features_of(content.name).items():
         typer.echo(f"  {column:30} {feature['dtype']:8} {feature['shape']}")
-    published = published_fingerprint(content.name) or "none: subsets are not published"
+    published = published_fingerprint(content.name) or "none recorded"
     typer.echo(f"published fingerprint  {published}")
     if not root.exists():
         typer.echo(f"not on this machine; `kitchen-prefs datasets make {content.name}` makes it")

@@ -1,5 +1,6 @@
 """The demonstrations of a data set in memory, as prompts."""
 
+from dataclasses import dataclass
 from typing import Self
 
 import numpy as np
@@ -8,10 +9,11 @@ from lerobot.datasets import LeRobotDataset, LeRobotDatasetMetadata
 
 from kitchen_prefs.datasets.columns import flat_numbers
 from kitchen_prefs.envs.lerobot_env import OBS_INSTANCES
-from kitchen_prefs.instances import COLUMNS, EXTENTS, IS_PLACE, POSE, PROMPT_COLUMNS, is_real
+from kitchen_prefs.instances import EXTENTS, IS_PLACE, POSE, as_rows, is_real
 
 PREFERENCE = "preference"
 CHOSEN_INDEX = "chosen_index"
+AT_ONCE = 4096  # frames whose padded sets are held at once: 26 MB in the second tier
 PLACE = slice(EXTENTS.start, POSE.stop)  # the columns of a place: the dish's extents, then the pose
 
 
@@ -19,7 +21,7 @@ class DemonstrationStore:
     """Whole episodes, concatenated.
 
     Attributes:
-        rows: The rows of all decisions of all episodes, (R, 14) float32.
+        rows: The rows of all decisions of all episodes, (R, D + 1) float32.
         preference: The preference's label of each episode, (E,) int64. On the standard track it
             pairs prompts with situations and is no input to a network.
         places: All distinct places for dishes, chosen or not: extents and pose, (K, 10) float32.
@@ -31,7 +33,8 @@ class DemonstrationStore:
         """Take the episodes' rows.
 
         Args:
-            rows: The rows of all decisions of all episodes, chosen ones marked, (R, 14) float32.
+            rows: The rows of all decisions of all episodes, chosen ones marked, (R, D + 1)
+                float32.
             lengths: The number of rows of each episode, (E,) int.
             preference: The preference's label of each episode, (E,) int64.
             places: All distinct places for dishes, (K, 10) float32.
@@ -64,16 +67,21 @@ class DemonstrationStore:
             )
         data = LeRobotDataset(meta.repo_id, root=meta.root, video_backend="pyav")  # has no videos
         frames = data.hf_dataset.with_format("arrow")
-        table = frames.select_columns(wanted)[:]
-        chosen, preference, episode = (flat_numbers(table[name]) for name in wanted[1:])
-        sets = flat_numbers(table[OBS_INSTANCES]).reshape(len(chosen), -1, COLUMNS)  # (T, N, 13)
-        marks = np.arange(sets.shape[1]) == chosen[:, None]  # (T, N)
-        kept = marks if chosen_only else is_real(sets)
-        rows = np.concatenate([sets[kept], marks[kept][:, None]], axis=1, dtype=np.float32)
+        numbers = frames.select_columns(wanted[1:])[:]
+        chosen, preference, episode = (flat_numbers(numbers[name]) for name in wanted[1:])
+        pieces = []
+        for start in range(0, len(chosen), AT_ONCE):
+            at_once = slice(start, start + AT_ONCE)
+            sets = flat_numbers(frames.select_columns([OBS_INSTANCES])[at_once][OBS_INSTANCES])
+            pieces.append(_Piece.of(sets, chosen[at_once], chosen_only))
         episodes, first = np.unique(episode, return_index=True)
-        lengths = np.bincount(episode, weights=kept.sum(axis=1)).astype(int)[episodes]
-        places = pd.DataFrame(sets[sets[..., IS_PLACE] > 0][:, PLACE]).drop_duplicates()
-        return cls(rows, lengths, preference[first], np.unique(places, axis=0))
+        kept = np.concatenate([piece.kept for piece in pieces])
+        return cls(
+            np.concatenate([piece.rows for piece in pieces]),
+            np.bincount(episode, weights=kept).astype(int)[episodes],
+            preference[first],
+            np.unique(np.concatenate([piece.places for piece in pieces]), axis=0),
+        )
 
     def draw(self, preference: int, excluded: np.ndarray, generator: np.random.Generator) -> int:
         """Draw an episode of a preference.
@@ -99,11 +107,35 @@ class DemonstrationStore:
             length: The number P of rows of a prompt; by default that of the longest episode.
 
         Returns:
-            The episodes' rows, zero-padded, (G, P, 14) float32.
+            The episodes' rows, zero-padded, (G, P, D + 1) float32.
         """
         rows = [self._episodes[episode] for episode in episodes]
         length = length or max(map(len, rows))
-        prompts = np.zeros((len(rows), length, PROMPT_COLUMNS), dtype=np.float32)
+        prompts = np.zeros((len(rows), length, self.rows.shape[1]), dtype=np.float32)
         for prompt, filled in zip(prompts, rows, strict=True):
             prompt[: len(filled)] = filled
         return prompts
+
+
+@dataclass(frozen=True, eq=False)
+class _Piece:
+    """What is kept of some frames, t of them.
+
+    Attributes:
+        rows: The kept rows, chosen ones marked, (r, D + 1) float32.
+        kept: How many of each frame, (t,) int.
+        places: The distinct places for dishes, (k, 10) float32.
+    """
+
+    rows: np.ndarray
+    kept: np.ndarray
+    places: np.ndarray
+
+    @classmethod
+    def of(cls, numbers: np.ndarray, chosen: np.ndarray, chosen_only: bool) -> Self:
+        sets = as_rows(numbers.reshape(len(chosen), -1))  # (t, N, D)
+        marks = np.arange(sets.shape[1]) == chosen[:, None]  # (t, N)
+        kept = marks if chosen_only else is_real(sets)
+        rows = np.concatenate([sets[kept], marks[kept][:, None]], axis=1, dtype=np.float32)
+        places = pd.DataFrame(sets[sets[..., IS_PLACE] > 0][:, PLACE]).drop_duplicates()
+        return cls(rows, kept.sum(axis=1), places.to_numpy())

@@ -48,6 +48,11 @@ def draw_dataset(name: str, episodes: Sequence[int] | None = None) -> Path:
         OSError: If it cannot be written; nothing is left behind.
     """
     content = content_of(name)
+    if content.is_of_people:
+        raise ValueError(
+            f"{content.name} is of the second tier, of which there are no drawings; draw a data "
+            "set of the first, such as dishwasher-val-v1."
+        )
     count = len(content.sessions)
     chosen = range(count) if episodes is None else episodes
     wrong = [number for number in chosen if not 0 <= number < count]

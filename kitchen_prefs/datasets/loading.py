@@ -89,7 +89,7 @@ def _is_missing(content: Content, root: Path) -> bool:
                 f"it in {before_edit(root)}; move that back, or delete it."
             )
         return True
-    if is_outdated(root):
+    if is_outdated(content.name, root):
         warnings.warn(
             f"The data set {content.name} in {root} is of an earlier format, so it is made again; "
             "its values stay the same.",

@@ -10,12 +10,12 @@ import json
 from pathlib import Path
 
 from kitchen_prefs.datasets.columns import fingerprint, read_columns, read_tasks
-from kitchen_prefs.splits import DATA_VERSION
+from kitchen_prefs.datasets.names import data_version_of
 from kitchen_prefs.utils.files import write_json
 
 MANIFEST = Path("meta") / "kitchen_prefs.json"
 FINGERPRINTS = Path(__file__).with_name("fingerprints.json")
-# How the values lie in the files. 1: a set is a list of 72 lists; 2: a flat list of 936 numbers.
+# How the values lie in the files. 1: a set is a list of 72 lists; 2: a flat list of numbers.
 FORMAT = 2
 KINDS = {
     "data_version": int,
@@ -32,7 +32,7 @@ def write_manifest(name: str, root: Path) -> dict:
     columns = read_columns(root)
     manifest = {
         "name": name,
-        "data_version": DATA_VERSION,
+        "data_version": data_version_of(name),
         "format": FORMAT,
         "fingerprint": fingerprint(columns, read_tasks(root)),
         "episodes": int(columns["episode_index"][-1]) + 1,
@@ -63,10 +63,11 @@ def read_manifest(name: str, root: Path) -> dict:
     manifest = _parse((root / MANIFEST).read_bytes())
     if manifest is None:
         raise ValueError(damaged.format(MANIFEST))
-    if manifest["data_version"] != DATA_VERSION:
+    version = data_version_of(name)
+    if manifest["data_version"] != version:
         raise ValueError(
             f"The data set {name} is of data version {manifest['data_version']}, but this "
-            f"kitchen_prefs works with version {DATA_VERSION}; {way_out}"
+            f"kitchen_prefs works with version {version}; {way_out}"
         )
     wrong = _wrong_files(manifest["files"], root)
     if wrong:
@@ -99,17 +100,17 @@ def before_edit(root: Path) -> Path:
     return root.with_name(f"{root.name}_old")
 
 
-def is_outdated(root: Path) -> bool:
+def is_outdated(name: str, root: Path) -> bool:
     """Whether a data set is whole and of this data version, but of an earlier format."""
     file = root / MANIFEST
     manifest = _parse(file.read_bytes()) if file.is_file() else None
-    if manifest is None or manifest["data_version"] != DATA_VERSION:
+    if manifest is None or manifest["data_version"] != data_version_of(name):
         return False
     return manifest["format"] < FORMAT and not _wrong_files(manifest["files"], root)
 
 
 def published_fingerprint(name: str) -> str | None:
-    """The fingerprint of a published data set; None for a subset."""
+    """The fingerprint of a published data set; None for one that is not recorded, as a subset."""
     return json.loads(FINGERPRINTS.read_text())["fingerprints"].get(name)
 
 

@@ -10,6 +10,7 @@ from kitchen_prefs.datasets.columns import SETS, flat_numbers
 from kitchen_prefs.datasets.names import NAMESPACE, dataset_root
 from kitchen_prefs.envs.demonstrations import marked_prompt
 from kitchen_prefs.envs.given_prompt import GivenPrompt
+from kitchen_prefs.instances import DESCRIBED_FLAT_SIZE
 from kitchen_prefs.simulation.sessions import preference_with
 
 WANTED = (SETS, "chosen_index", "preference", "episode_index")
@@ -34,13 +35,18 @@ def read_prompt(name: str) -> GivenPrompt:
     if not mine.any():
         last = columns["episode_index"].max(initial=-1)
         raise ValueError(f"The data set {dataset} has no episode {episode}; the last is {last}.")
+    if columns[SETS].size == len(mine) * DESCRIBED_FLAT_SIZE:
+        raise ValueError(
+            f"{dataset} is of the second tier, whose users the splits of the first do not have; "
+            "give a data set of the first, such as dishwasher-val-v1."
+        )
     label = int(columns["preference"][mine][0])
     if label < 0:
         raise ValueError(
             f"Episode {episode} of {dataset} follows no preference of the benchmark, so no expert "
             "says what would be right; `kitchen-prefs demonstrations agreement` compares people."
         )
-    sets = columns[SETS].reshape(len(mine), -1)[mine]  # (t, 936)
+    sets = columns[SETS].reshape(len(mine), -1)[mine]  # (t, N D)
     return GivenPrompt(marked_prompt(sets, columns["chosen_index"][mine]), preference_with(label))
 
 

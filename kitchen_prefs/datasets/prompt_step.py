@@ -9,6 +9,8 @@ a policy's preprocessor, it pairs each sample with another episode of the same p
       episode_index, index   (B,)      ------>     observation.prompt     (B, 1664, 14)
                                     PromptStep
 
+In the second tier a prompt is (B, 2048, 22), and another session of the same user.
+
 The standard track allows this use of the training split's `preference`: it pairs prompts with
 samples, and no network reads it.
 """
@@ -23,14 +25,14 @@ from lerobot.processor import ProcessorStepRegistry
 from torch import Tensor
 
 from kitchen_prefs.datasets.dataset_step import DatasetStep, Features, read_demonstrations
-from kitchen_prefs.envs.lerobot_env import OBS_PROMPT
-from kitchen_prefs.instances import CHOSEN, POSE, PROMPT_CAPACITY, PROMPT_COLUMNS
+from kitchen_prefs.envs.lerobot_env import OBS_INSTANCES, OBS_PROMPT
+from kitchen_prefs.instances import COLUMNS, COLUMNS_OF_FLAT, POSE, PROMPT_CAPACITIES
 
 
 @ProcessorStepRegistry.register("kitchen_prefs_prompt")
 @dataclass
 class PromptStep(DatasetStep):
-    """Adds `observation.prompt`, (B, 1664, 14) float32, to batches of a data set.
+    """Adds `observation.prompt`, (B, P, D + 1) float32, to batches of a data set.
 
     The prompts depend on the seed and on the frames of the batch alone, so a resumed training
     repeats an unbroken one. An observation that contains a prompt already, as the environment's
@@ -69,15 +71,20 @@ class PromptStep(DatasetStep):
         return {**transition, TransitionKey.OBSERVATION: {**observation, OBS_PROMPT: prompts}}
 
     def transform_features(self, features: Features) -> Features:
-        """The features of a batch, with the prompt's."""
-        prompt = PolicyFeature(FeatureType.STATE, (PROMPT_CAPACITY, PROMPT_COLUMNS))
+        """The features of a batch, with the prompt's, which has the tier of the observed sets.
+
+        Where no set is observed, it is the first tier's.
+        """
         observed = features.get(PipelineFeatureType.OBSERVATION, {})
+        width = observed[OBS_INSTANCES].shape[-1] if OBS_INSTANCES in observed else COLUMNS
+        columns = COLUMNS_OF_FLAT.get(width, width)
+        prompt = PolicyFeature(FeatureType.STATE, (PROMPT_CAPACITIES[columns], columns + 1))
         return {**features, PipelineFeatureType.OBSERVATION: {**observed, OBS_PROMPT: prompt}}
 
     def _check(self, index: np.ndarray, episodes: np.ndarray, action: Tensor) -> None:
         """Check that a batch is of the step's data set: frame i has the i-th chosen row's pose."""
         store = read_demonstrations(str(self.repo_id), self.root)
-        poses = store.rows[store.rows[:, CHOSEN] > 0][:, POSE]  # (T, 7)
+        poses = store.rows[store.rows[:, -1] > 0][:, POSE]  # (T, 7)
         known = index.max() < len(poses) and episodes.max() < len(store.preference)
         actions = action.cpu().numpy().reshape(len(index), -1, poses.shape[1])  # (B, K, 7)
         if not known or not (actions == poses[index][:, None]).all(-1).any(-1).all():
@@ -89,7 +96,7 @@ class PromptStep(DatasetStep):
             )
 
     def _prompts(self, index: np.ndarray, episodes: np.ndarray) -> Tensor:
-        """Draw another episode of the same preference for each frame, (B, 1664, 14)."""
+        """Draw another episode of the same preference for each frame, (B, P, D + 1)."""
         store = read_demonstrations(str(self.repo_id), self.root)
         generator = np.random.default_rng([self.seed, *index])
         drawn = [store.draw(store.preference[e], np.array([e]), generator) for e in episodes]
@@ -99,4 +106,5 @@ class PromptStep(DatasetStep):
                 f"Episode {alone[0]} of {self.repo_id!r} is the only one of its preference, so "
                 "none can prompt it; train on two demonstrations of each preference or more."
             )
-        return torch.from_numpy(store.prompts(drawn, PROMPT_CAPACITY))
+        capacity = PROMPT_CAPACITIES[store.rows.shape[1] - 1]
+        return torch.from_numpy(store.prompts(drawn, capacity))

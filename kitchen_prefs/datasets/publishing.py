@@ -8,7 +8,6 @@ from kitchen_prefs.datasets.cards import card, card_facts
 from kitchen_prefs.datasets.manifest import FINGERPRINTS, read_manifest
 from kitchen_prefs.datasets.names import content_of, dataset_names
 from kitchen_prefs.datasets.writing import write_dataset
-from kitchen_prefs.splits import DATA_VERSION
 from kitchen_prefs.utils.files import write_json
 
 FACTS = "facts.json"  # lies beside the cards: what they say that only the data can tell
@@ -31,7 +30,7 @@ def record_published(cards: Path) -> None:
             write_dataset(content_of(name), root)
             facts[name] = card_facts(read_manifest(name, root), root)
     fingerprints = {name: of_name["fingerprint"] for name, of_name in facts.items()}
-    write_json(FINGERPRINTS, {"data_version": DATA_VERSION, "fingerprints": fingerprints})
+    write_json(FINGERPRINTS, {"fingerprints": fingerprints})
     write_json(cards / FACTS, facts)
     write_cards(cards)
 
@@ -50,6 +49,6 @@ def write_cards(cards: Path) -> None:
 
 
 def published_cards(cards: Path) -> dict[str, str]:
-    """The card of each published data set, by name, from its recorded facts."""
+    """The card of each published data set that was recorded, by name, from its facts."""
     facts = json.loads((cards / FACTS).read_text())
-    return {name: card(content_of(name), facts[name]) for name in dataset_names()}
+    return {name: card(content_of(name), facts[name]) for name in facts}

@@ -1,67 +1,20 @@
 """Verifies a data set against its files: every property that it must have."""
 
-import json
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
-import pyarrow as pa
-import pyarrow.parquet as pq
 from lerobot.datasets import aggregate_stats
 from lerobot.datasets.compute_stats import compute_episode_stats
 from lerobot.utils.constants import DEFAULT_FEATURES
 from tqdm import tqdm
 
 from kitchen_prefs import instances
-from kitchen_prefs.datasets.columns import (
-    FEATURES,
-    FPS,
-    fingerprint,
-    read_columns,
-    read_tasks,
-    with_statistics,
-)
-from kitchen_prefs.datasets.manifest import published_fingerprint, read_manifest
-from kitchen_prefs.datasets.names import Content, content_of, dataset_root
-from kitchen_prefs.envs.environment import DishwasherLoading
-from kitchen_prefs.metrics import edit_similarity, packing_efficiency
-from kitchen_prefs.simulation.sessions import make_session
-from kitchen_prefs.splits import SPLITS
+from kitchen_prefs.datasets import episode_checks
+from kitchen_prefs.datasets.columns import FPS, SETS, features_of, fingerprint, with_statistics
+from kitchen_prefs.datasets.manifest import published_fingerprint
+from kitchen_prefs.datasets.stored_data import Data, read_data
 
-REPLAYED = 20  # episodes spread over the data set; a wrong kitchen or expert shows in any of them
 STATS_TOLERANCE = 1e-3  # LeRobot adds float32 means of squares, so its deviations are that inexact
-EPISODE_FACTS = ("length", "dataset_from_index", "dataset_to_index")
-
-
-@dataclass(frozen=True)
-class Data:
-    """A data set as its files hold it.
-
-    Attributes:
-        content: What it should hold.
-        manifest: What it says about itself.
-        columns: As from `read_columns`.
-        tasks: As from `read_tasks`.
-        stats: LeRobot's statistics.
-        lengths: The number of frames of each episode, (E,).
-        starts: Its first frame, as LeRobot looks it up, (E,).
-        ends: The frame after its last, (E,).
-    """
-
-    content: Content
-    manifest: dict
-    columns: dict[str, np.ndarray]
-    tasks: list[str]
-    stats: dict[str, dict]
-    lengths: np.ndarray
-    starts: np.ndarray
-    ends: np.ndarray
-
-    def frames(self, episode: int) -> slice:
-        """The frames of an episode."""
-        start = int(self.lengths[:episode].sum())
-        return slice(start, start + int(self.lengths[episode]))
 
 
 def verify_dataset(name: str) -> Iterator[str]:
@@ -76,39 +29,15 @@ def verify_dataset(name: str) -> Iterator[str]:
     Raises:
         ValueError: If something does not hold; the message says what.
     """
-    data = _read(name)
+    data = read_data(name)
     yield "Its files are as they were written."
-    for claim, check in CHECKS.items():
+    checks = CHECKS | (OF_PEOPLE if data.content.is_of_people else OF_PREFERENCES)
+    for claim, check in checks.items():
         try:
             check(data)
         except ValueError as error:
             raise ValueError(f"The data set {data.content.name} is wrong: {error}") from error
         yield claim
-
-
-def _read(name: str) -> Data:
-    content = content_of(name)
-    root = dataset_root(content.name)
-    if not root.exists():
-        raise ValueError(
-            f"The data set {content.name} is not in {root.parent}; "
-            f"`kitchen-prefs datasets make {content.name}` makes it."
-        )
-    manifest = read_manifest(content.name, root)
-    return Data(
-        content,
-        manifest,
-        read_columns(root),
-        read_tasks(root),
-        json.loads((root / "meta" / "stats.json").read_text()),
-        *_episode_facts(root),
-    )
-
-
-def _episode_facts(root: Path) -> list[np.ndarray]:
-    paths = sorted((root / "meta" / "episodes").glob("*/*.parquet"))
-    table = pa.concat_tables([pq.read_table(path, columns=list(EPISODE_FACTS)) for path in paths])
-    return [table[name].to_numpy() for name in EPISODE_FACTS]
 
 
 def _check_fingerprint(data: Data) -> None:
@@ -144,9 +73,9 @@ def _check_rows(data: Data) -> None:
     for name, values in data.columns.items():
         if not np.isfinite(values).all():
             raise ValueError(f"the column {name} holds NaN or infinity.")
-    sets = data.columns["observation.instances"]  # (F, N, 13)
+    sets = data.columns[SETS]  # (F, N, D)
     chosen = data.columns["chosen_index"]  # (F,)
-    if chosen.min() < 0 or chosen.max() >= instances.CAPACITY:
+    if chosen.min() < 0 or chosen.max() >= sets.shape[1]:
         raise ValueError("a chosen index lies outside the instance set.")
     if not instances.choosable(sets)[np.arange(len(chosen)), chosen].all():
         raise ValueError("a chosen index points to a row that the decision may not choose.")
@@ -161,7 +90,7 @@ def _check_ends(data: Data) -> None:
 
 
 def _check_statistics(data: Data) -> None:
-    features = {**FEATURES, **DEFAULT_FEATURES}
+    features = features_of(data.content.name) | DEFAULT_FEATURES
     of_episodes = []
     for episode in tqdm(range(len(data.lengths)), "statistics", unit="episode", leave=False):
         frames = data.frames(episode)
@@ -177,47 +106,36 @@ def _check_statistics(data: Data) -> None:
 
 
 def _check_actions(data: Data) -> None:
-    sets, chosen = data.columns["observation.instances"], data.columns["chosen_index"]
+    sets, chosen = data.columns[SETS], data.columns["chosen_index"]
     poses = sets[np.arange(len(chosen)), chosen, instances.POSE]  # (F, 7)
     wrong = np.flatnonzero((poses != data.columns["action"]).any(1))
     if len(wrong):
         raise ValueError(f"the action of frame {wrong[0]} is not the pose of its chosen row.")
 
 
-def _check_labels(data: Data) -> None:
-    for episode, (split, index) in enumerate(data.content.sessions):
-        session = make_session(split, index)
-        frames = data.frames(episode)
-        if (data.columns["preference"][frames] != session.label).any():
-            raise ValueError(f"episode {episode} does not have the preference of its session.")
-        tasks = {data.tasks[i] for i in data.columns["task_index"][frames]}
-        if tasks != {session.preference.in_words}:
-            raise ValueError(f"the task of episode {episode} is not its preference in words.")
-
-
-def _check_replay(data: Data) -> None:
-    quiet = [i for i, (split, _) in enumerate(data.content.sessions) if not SPLITS[split].noisy]
-    sample = quiet[:: max(len(quiet) // REPLAYED, 1)]
-    for episode in tqdm(sample, "replay", unit="episode", leave=False):
-        split, index = data.content.sessions[episode]
-        environment = DishwasherLoading(split)
-        environment.reset(options={"session": index})
-        frames = data.frames(episode)
-        rewards = [environment.step(action)[1] for action in data.columns["action"][frames]]
-        if not np.array_equal(rewards, data.columns["next.reward"][frames]):
-            raise ValueError(f"the rewards of episode {episode} are not those of its decisions.")
-        facts = environment.episode()
-        if packing_efficiency(facts) != 1 or edit_similarity(facts) != 1 or not facts.finished:
-            raise ValueError(f"episode {episode} does not load the dishwasher as the expert does.")
-
-
-CHECKS: dict[str, Callable[[Data], None]] = {
+Check = Callable[[Data], None]
+CHECKS: dict[str, Check] = {
     "Its fingerprint is the recorded one.": _check_fingerprint,
     "Episodes, frames and tasks are numbered without gaps.": _check_indices,
     "All values are finite, and each chosen row may be chosen.": _check_rows,
     "Just the last decision of each episode is done and successful.": _check_ends,
     "Each action is the pose of the chosen row.": _check_actions,
-    "Each episode has the preference of its session, in label and words.": _check_labels,
     "LeRobot's statistics are those of the columns.": _check_statistics,
-    "Replayed in a kitchen without noise, demonstrations reach PE 1 and ED 1.": _check_replay,
+}
+OF_PREFERENCES: dict[str, Check] = {
+    "Each episode has the preference of its session, in label and words.": (
+        episode_checks.check_preferences
+    ),
+    "Replayed in a kitchen without noise, demonstrations reach PE 1 and ED 1.": (
+        episode_checks.replay_preferences
+    ),
+}
+OF_PEOPLE: dict[str, Check] = {
+    "Each episode has the user of its session, in number and words.": episode_checks.check_users,
+    "A sample of the certificates is what the exact reader says.": (
+        episode_checks.check_certificates
+    ),
+    "Replayed, demonstrations reach Where 1 and Turn 1, and nothing is refused.": (
+        episode_checks.replay_users
+    ),
 }

@@ -13,7 +13,7 @@ import threading
 from collections.abc import Iterable, Iterator
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -30,20 +30,26 @@ from lerobot.utils.utils import flatten_dict
 from tqdm import tqdm
 
 from kitchen_prefs.datasets.cards import card, card_facts
+from kitchen_prefs.datasets.certificates import certificate_of, write_certificates
 from kitchen_prefs.datasets.columns import (
     FEATURES,
     FPS,
     ROBOT_TYPE,
     columns_of,
+    features_of,
     with_statistics,
 )
 from kitchen_prefs.datasets.manifest import write_manifest
 from kitchen_prefs.datasets.names import Content
 from kitchen_prefs.envs.demonstrations import Demonstration, demonstrate
+from kitchen_prefs.envs.people_demonstrations import demonstrate_people
+from kitchen_prefs.people.certificates import Certificate
+from kitchen_prefs.people.sessions import make_people_session
+from kitchen_prefs.people.splits import PEOPLE_SPLITS
 from kitchen_prefs.simulation.sessions import make_session
 
-ALL_FEATURES = {**FEATURES, **DEFAULT_FEATURES}
-FIRST_FILE = {"chunk_index": 0, "file_index": 0}  # each data set is smaller than one file may be
+# One file each. LeRobot would begin another at 100 MB, which people_train alone passes; it reads any.
+FIRST_FILE = {"chunk_index": 0, "file_index": 0}
 EPISODES_A_TASK = 4  # enough to make passing them between processes cheap, few enough to share out
 
 Stats = dict[str, dict[str, np.ndarray]]
@@ -55,13 +61,15 @@ class EpisodeFrames:
 
     Attributes:
         columns: As from `columns_of`.
-        task: The preference in words.
+        task: The preference, or the user, in words.
         stats: LeRobot's statistics of the columns.
+        certificate: How sure the exact reader is of it; None in the first tier.
     """
 
     columns: dict[str, np.ndarray]
     task: str
     stats: Stats
+    certificate: Certificate | None = None
 
 
 def write_dataset(content: Content, root: Path, workers: int | None = None) -> None:
@@ -95,26 +103,32 @@ def write_episodes(name: str, episodes: Iterable[EpisodeFrames], count: int, roo
     """
     data = root / DEFAULT_DATA_PATH.format(**FIRST_FILE)
     data.parent.mkdir(parents=True)
-    schema = get_hf_features_from_features(ALL_FEATURES).arrow_schema
+    features = features_of(name) | DEFAULT_FEATURES
+    schema = get_hf_features_from_features(features).arrow_schema
     tasks: dict[str, int] = {}
     stats: list[Stats] = []
     rows: list[dict] = []
+    certificates: list[Certificate] = []
     with pq.ParquetWriter(data, schema, compression="snappy") as file:
         for episode in tqdm(episodes, name, count, unit="episode"):
             start = rows[-1]["dataset_to_index"] if rows else 0
             task_index = tasks.setdefault(episode.task, len(tasks))
             bookkeeping = _bookkeeping(len(rows), start, len(episode.columns["action"]), task_index)
-            stats.append(episode.stats | compute_episode_stats(bookkeeping, ALL_FEATURES))
+            stats.append(episode.stats | compute_episode_stats(bookkeeping, features))
             rows.append(_episode_row(bookkeeping, episode.task, stats[-1]))
             table = _table(episode.columns | bookkeeping, schema)
             file.write_table(table)  # one row group an episode, as LeRobot has it
-    _write_meta(root, tasks, stats, rows)
+            if episode.certificate is not None:
+                certificates.append(episode.certificate)
+    _write_meta(root, features, tasks, stats, rows)
+    if certificates:
+        write_certificates(certificates, root)
 
 
 def frames_of(demonstration: Demonstration) -> EpisodeFrames:
     """The frames of a demonstration with their statistics."""
     columns = columns_of(demonstration)
-    stats = compute_episode_stats(with_statistics(columns), ALL_FEATURES)
+    stats = compute_episode_stats(with_statistics(columns), FEATURES)
     return EpisodeFrames(columns, demonstration.task, stats)
 
 
@@ -146,7 +160,11 @@ def _leave_with_parent() -> None:
 
 
 def _demonstrate(session: tuple[str, int]) -> EpisodeFrames:
-    return frames_of(demonstrate(make_session(*session)))
+    split, index = session
+    if split not in PEOPLE_SPLITS:
+        return frames_of(demonstrate(make_session(split, index)))
+    of_people = make_people_session(split, index)
+    return replace(frames_of(demonstrate_people(of_people)), certificate=certificate_of(of_people))
 
 
 def _bookkeeping(number: int, start: int, frames: int, task_index: int) -> dict[str, np.ndarray]:
@@ -185,9 +203,11 @@ def _array(values: np.ndarray, kind: pa.DataType) -> pa.Array:
     return flat if values.ndim == 1 else pa.FixedSizeListArray.from_arrays(flat, type=kind)
 
 
-def _write_meta(root: Path, tasks: dict[str, int], stats: list[Stats], rows: list[dict]) -> None:
+def _write_meta(
+    root: Path, features: dict, tasks: dict[str, int], stats: list[Stats], rows: list[dict]
+) -> None:
     info = create_empty_dataset_info(
-        CODEBASE_VERSION, FPS, ALL_FEATURES, use_videos=False, robot_type=ROBOT_TYPE
+        CODEBASE_VERSION, FPS, features, use_videos=False, robot_type=ROBOT_TYPE
     )
     info.total_episodes = len(rows)
     info.total_frames = rows[-1]["dataset_to_index"]

@@ -5,8 +5,9 @@ from gymnasium.spaces import Box, Dict
 
 from kitchen_prefs import instances
 from kitchen_prefs.envs.kitchen_env import KitchenEnv
-from kitchen_prefs.envs.observations import ENVIRONMENT_STATE_SIZE, STATE_SIZE
+from kitchen_prefs.envs.observations import ENVIRONMENT_STATE_SIZE
 from kitchen_prefs.envs.people_demonstrations import people_prompt_of, with_evening
+from kitchen_prefs.envs.people_observations import PEOPLE_STATE
 from kitchen_prefs.envs.people_simulator import PeopleSimulator
 from kitchen_prefs.metrics.people_episode import PeopleEpisode, success
 from kitchen_prefs.people.sessions import PeopleSession, make_people_session
@@ -97,7 +98,7 @@ def people_observation_space(prompts: int, flat: bool) -> Dict:
     shapes = {
         "instances": flat_rows if flat else rows,
         "environment_state": (ENVIRONMENT_STATE_SIZE,),
-        "agent_pos": (STATE_SIZE + 1,),
+        "agent_pos": (len(PEOPLE_STATE),),
         "prompt": (capacity, instances.DESCRIBED_COLUMNS + 1),
     }
     return Dict({key: Box(-np.inf, np.inf, shape, np.float32) for key, shape in shapes.items()})

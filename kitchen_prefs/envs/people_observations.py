@@ -2,11 +2,13 @@
 
 import numpy as np
 
-from kitchen_prefs.envs.observations import Observation, Observer
+from kitchen_prefs.envs.observations import STATE, Observation, Observer
 from kitchen_prefs.instances import COLUMNS, DESCRIBED_COLUMNS, MATERIAL, RGB, SOIL
 from kitchen_prefs.people import attributes
 from kitchen_prefs.people.attributes import DescribedDishes
 from kitchen_prefs.simulation.kitchen import FIRST_DISH, SINK, Kitchen
+
+PEOPLE_STATE = (*STATE, "evening: the prompt whose user is to be served")
 
 
 class DescribedObserver(Observer):

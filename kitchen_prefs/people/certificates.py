@@ -38,19 +38,29 @@ class Certificate:
 def certificate(
     posterior: Posterior, dishes: DescribedDishes, table: PlacementTable
 ) -> Certificate:
-    """Certify what is known of a user for some dishes, which can stand at a table's placements.
+    """Certify what is known of a user for some dishes, which can stand at a table's placements."""
+    destinations = _sure_of_zones(posterior, dishes) * _sure_of_overflow(posterior, dishes, table)
+    return Certificate(float(destinations.mean()), _sure_of_ranks(posterior, dishes))
 
-    Where one of the two is not sure, the dearer one is not computed and 0.
-    """
+
+def is_certified(posterior: Posterior, dishes: DescribedDishes, table: PlacementTable) -> bool:
+    """Whether the certificate holds; what takes longest is computed only where the rest is sure."""
+    return (
+        _sure_of_ranks(posterior, dishes) >= SURE
+        and float(_sure_of_zones(posterior, dishes).mean()) >= SURE
+        and certificate(posterior, dishes, table).holds
+    )
+
+
+def _sure_of_ranks(posterior: Posterior, dishes: DescribedDishes) -> float:
     earlier = posterior.earlier(dishes)  # (m, m)
     relation = np.stack([earlier, earlier.T, 1 - earlier - earlier.T]).max(axis=0)
-    ranks = float(relation[~np.eye(len(relation), dtype=bool)].mean())
-    if ranks < SURE:
-        return Certificate(0.0, ranks)
-    zones = posterior.zones(dishes).max(axis=1)  # (m,)
-    if zones.mean() < SURE:
-        return Certificate(float(zones.mean()), ranks)
-    return Certificate(float((zones * _sure_of_overflow(posterior, dishes, table)).mean()), ranks)
+    return float(relation[~np.eye(len(relation), dtype=bool)].mean())
+
+
+def _sure_of_zones(posterior: Posterior, dishes: DescribedDishes) -> np.ndarray:
+    """The probability of the most probable zone of each dish, (m,)."""
+    return posterior.zones(dishes).max(axis=1)
 
 
 def _sure_of_overflow(

@@ -16,7 +16,7 @@ from zlib import crc32
 import numpy as np
 
 from kitchen_prefs.people.attributes import DescribedDishes, draw_dishes
-from kitchen_prefs.people.certificates import certificate
+from kitchen_prefs.people.certificates import is_certified
 from kitchen_prefs.people.evidence import Evidence, evidence_of
 from kitchen_prefs.people.expert import roll_out_plan
 from kitchen_prefs.people.posterior import Posterior
@@ -210,7 +210,7 @@ def _shown(
 
 def _certified(prompts: Sequence[UserDemonstration], dishes: DescribedDishes) -> bool:
     posterior = Posterior([prompt.evidence for prompt in prompts])
-    return certificate(posterior, dishes, people_table()).holds
+    return is_certified(posterior, dishes, people_table())
 
 
 def _generator(split: str, salt: int, index: int, purpose: str) -> np.random.Generator:

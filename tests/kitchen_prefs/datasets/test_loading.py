@@ -14,7 +14,7 @@ import torch
 import kitchen_prefs
 from kitchen_prefs import instances
 from kitchen_prefs.datasets import dataset_root, load_dataset, make_dataset
-from kitchen_prefs.datasets.verification import CHECKS, verify_dataset
+from kitchen_prefs.datasets.verification import verify_dataset
 
 pytestmark = pytest.mark.xdist_group("loading")  # one fixture of the module serves all
 
@@ -27,7 +27,7 @@ def test_a_single_demonstration_is_made_and_verified(home):
     dataset = load_dataset(name)
     assert dataset.num_episodes == 1
     assert {int(label) for label in dataset.hf_dataset["preference"]} == {8}
-    assert len(list(verify_dataset(name))) == 1 + len(CHECKS)
+    assert "reach PE 1 and ED 1" in list(verify_dataset(name))[-1]
 
 
 def test_a_loaded_data_set_holds_demonstrations(small, home, monkeypatch):
