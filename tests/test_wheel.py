@@ -88,7 +88,7 @@ def test_no_generic_name_is_installed(names):
 def test_data_recipes_and_checkpoints_are_installed(names):
     assert "kitchen_prefs/simulation/placements.npz" in names
     assert "kitchen_prefs/datasets/fingerprints.json" in names
-    assert "kitchen_prefs/datasets/card.md" in names
+    assert {f"kitchen_prefs/datasets/{card}.md" for card in ("card", "people_card")} <= set(names)
     assert "kitchen_prefs/web/templates/kitchen.js" in names
     assert "kitchen_prefs_experiments/recipes/ttp_quick.yaml" in names
     assert "kitchen_prefs_experiments/checkpoints/manifest.json" in names

@@ -48,7 +48,7 @@ from kitchen_prefs.people.sessions import make_people_session
 from kitchen_prefs.people.splits import PEOPLE_SPLITS
 from kitchen_prefs.simulation.sessions import make_session
 
-# One file each. LeRobot would begin another at 100 MB, which people_train alone passes; it reads any.
+# One file. LeRobot would begin another at 100 MB, which people_train alone passes; it reads any.
 FIRST_FILE = {"chunk_index": 0, "file_index": 0}
 EPISODES_A_TASK = 4  # enough to make passing them between processes cheap, few enough to share out
 

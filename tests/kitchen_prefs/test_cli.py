@@ -99,15 +99,16 @@ def test_a_home_that_cannot_be_written_ends_in_one_sentence(tmp_path):
     assert "Traceback" not in done.stderr
 
 
-def test_record_keeps_fingerprints_and_cards(tmp_path, monkeypatch):
+@pytest.mark.parametrize(("name", "episodes"), [(SMALL, 1), ("dishwasher-people_train-u1-v2", 2)])
+def test_record_keeps_fingerprints_and_cards(tmp_path, monkeypatch, name, episodes):
     recording = "kitchen_prefs.datasets.publishing"
-    monkeypatch.setattr(f"{recording}.dataset_names", lambda: (SMALL,))
+    monkeypatch.setattr(f"{recording}.dataset_names", lambda: (name,))
     monkeypatch.setattr(f"{recording}.FINGERPRINTS", tmp_path / "fingerprints.json")
     assert run("datasets", "record", str(tmp_path / "cards")).exit_code == 0
     known = json.loads((tmp_path / "fingerprints.json").read_text())
-    card = (tmp_path / "cards" / f"{SMALL}.md").read_text()
-    assert f"`{known['fingerprints'][SMALL]}`" in card
-    assert "| episodes | 1 |" in card
+    card = (tmp_path / "cards" / f"{name}.md").read_text()
+    assert f"`{known['fingerprints'][name]}`" in card
+    assert f"| episodes | {episodes} |" in card
 
 
 @pytest.mark.parametrize("command", ["list", "show", "make", "verify", "push", "record"])

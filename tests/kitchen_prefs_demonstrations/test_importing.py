@@ -133,6 +133,7 @@ def test_consent_is_asked_for(files, tmp_path):
     [
         ("mine", "holds something already"),
         ("dishwasher-train-v1", "name of a published data set"),
+        ("dishwasher-people_val-v2", "name of a published data set"),
         ("../mine", "small letters"),
         ("Mine", "small letters"),
     ],

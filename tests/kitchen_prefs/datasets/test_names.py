@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 import kitchen_prefs
 from kitchen_prefs.datasets import load_dataset
 from kitchen_prefs.datasets.names import content_of
+from kitchen_prefs.people.splits import PEOPLE_DATA_VERSION, PEOPLE_SPLITS
 from kitchen_prefs.splits import DATA_VERSION, SPLITS
 
 SMALL = "dishwasher-train-p2-d2-v1"
@@ -15,8 +16,17 @@ SMALL = "dishwasher-train-p2-d2-v1"
 
 def test_there_is_one_data_set_a_split_and_one_with_all_twelve():
     sizes = {name: len(content_of(name).sessions) for name in kitchen_prefs.dataset_names()}
-    expected = {f"dishwasher-{s.name}-v{DATA_VERSION}": s.sessions for s in SPLITS.values()}
-    assert sizes == expected | {f"dishwasher-train-all-v{DATA_VERSION}": 12 * 80}
+    first = {f"dishwasher-{s.name}-v{DATA_VERSION}": s.sessions for s in SPLITS.values()}
+    second = {
+        f"dishwasher-{s.name}-v{PEOPLE_DATA_VERSION}": s.sessions for s in PEOPLE_SPLITS.values()
+    }
+    assert sizes == first | second | {f"dishwasher-train-all-v{DATA_VERSION}": 12 * 80}
+
+
+@given(st.integers(1, 2000))
+def test_a_subset_of_users_has_the_first_ones_with_both_of_their_sessions(users):
+    sessions = content_of(f"dishwasher-people_train-u{users}-v2").sessions
+    assert sessions == tuple(("people_train", i) for i in range(2 * users))
 
 
 def test_all_twelve_preferences_are_equally_frequent_in_train_all():
@@ -57,6 +67,10 @@ def test_a_subset_of_prompts_has_the_first_demonstrations_of_one_held_out_prefer
         "dishwasher-train-p01-d1-v1",
         "dishwasher-val-p1-d1-v1",
         "other/dishwasher-train-v1",
+        "dishwasher-people_train-u0-v2",
+        "dishwasher-people_train-u2001-v2",
+        "dishwasher-people_train-u05-v2",
+        "dishwasher-people_val-u5-v2",
         "../dishwasher-train-v1",
         "",
     ],
@@ -75,6 +89,8 @@ def test_a_misspelt_name_is_answered_with_the_nearest():
 def test_another_version_is_refused_with_the_one_that_exists():
     with pytest.raises(ValueError, match="ask for 'dishwasher-train-p2-d2-v1'"):
         content_of("dishwasher-train-p2-d2-v7")
+    with pytest.raises(ValueError, match="ask for 'dishwasher-people_val-v2'"):
+        content_of("dishwasher-people_val-v1")
 
 
 def test_a_name_may_be_lerobots_repo_id():

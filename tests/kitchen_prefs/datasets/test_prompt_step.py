@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 import torch
-from lerobot.configs import PipelineFeatureType
+from lerobot.configs import FeatureType, PipelineFeatureType, PolicyFeature
 from lerobot.datasets import LeRobotDataset
 from lerobot.policies import make_policy
 from lerobot.policies.act.configuration_act import ACTConfig
@@ -13,8 +13,10 @@ from lerobot.processor import PolicyProcessorPipeline, ProcessorStepRegistry
 from lerobot.processor.converters import batch_to_transition, transition_to_batch
 
 from kitchen_prefs.datasets import make_dataset
+from kitchen_prefs.datasets.demonstration_store import DemonstrationStore
 from kitchen_prefs.datasets.prompt_step import PromptStep
 from kitchen_prefs.envs.demonstrations import prompt_of
+from kitchen_prefs.instances import POSE
 from kitchen_prefs.simulation.sessions import make_session
 from kitchen_prefs.splits import SPLITS
 
@@ -152,6 +154,32 @@ def test_an_only_demonstration_is_refused(tmp_path):
     dataset = made("dishwasher-train-p2-d1-v1", tmp_path)
     with pytest.raises(ValueError, match=r"Episode 0 .* is the only one of its preference"):
         pipeline_of(step_of(dataset))(batch_of(dataset, (0, 1)))
+
+
+def test_in_the_second_tier_the_users_other_session_prompts(tmp_path):
+    dataset = made("dishwasher-people_train-u2-v2", tmp_path)
+    batch = batch_of(dataset, range(0, dataset.num_frames, 20))
+    prompts = pipeline_of(step_of(dataset))(batch)["observation.prompt"]
+    assert prompts.shape == (len(batch["index"]), 2048, 22)
+    for episode, prompt in zip(batch["episode_index"].tolist(), prompts, strict=True):
+        mine = np.flatnonzero(np.array(dataset.hf_dataset["episode_index"]) == episode ^ 1)
+        actions = torch.stack([dataset[int(i)]["action"] for i in mine])
+        assert torch.equal(prompt[prompt[:, -1] > 0][:, POSE], actions)
+    sets = PolicyFeature(FeatureType.STATE, (1596,))
+    features = {PipelineFeatureType.OBSERVATION: {"observation.instances": sets}}
+    stated = PromptStep().transform_features(features)[PipelineFeatureType.OBSERVATION]
+    assert stated["observation.prompt"].shape == (2048, 22)
+
+
+@pytest.mark.parametrize("chosen_only", [True, False])
+def test_demonstrations_read_in_pieces_are_the_same(dataset, monkeypatch, chosen_only):
+    whole = DemonstrationStore.read(dataset.meta, chosen_only)
+    monkeypatch.setattr("kitchen_prefs.datasets.demonstration_store.AT_ONCE", 7)
+    pieces = DemonstrationStore.read(dataset.meta, chosen_only)
+    for name in ("rows", "preference", "places"):
+        assert np.array_equal(getattr(whole, name), getattr(pieces, name))
+    everything = range(len(whole.preference))
+    assert np.array_equal(whole.prompts(everything), pieces.prompts(everything))
 
 
 def test_it_is_registered_and_states_its_feature():

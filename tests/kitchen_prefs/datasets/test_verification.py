@@ -9,11 +9,13 @@ from lerobot.datasets import aggregate_stats
 from lerobot.datasets.compute_stats import compute_episode_stats
 
 from kitchen_prefs.datasets import dataset_root, make_dataset
+from kitchen_prefs.datasets.certificates import CERTIFICATES
 from kitchen_prefs.datasets.columns import fingerprint, read_columns, read_tasks
 from kitchen_prefs.datasets.manifest import write_manifest
 from kitchen_prefs.datasets.verification import verify_dataset
 
 SMALL = "dishwasher-train-p2-d1-v1"
+OF_PEOPLE = "dishwasher-people_train-u1-v2"
 NOISY = "dishwasher-noisy-v1"
 
 
@@ -24,10 +26,52 @@ def root(tmp_path, monkeypatch):
     return make_dataset(SMALL)
 
 
-def test_a_data_set_that_was_made_here_is_right(root):
-    claims = list(verify_dataset(SMALL))
+@pytest.fixture
+def root_of_people(tmp_path, monkeypatch):
+    """A small data set of the second tier to spoil."""
+    monkeypatch.setenv("HF_LEROBOT_HOME", str(tmp_path))
+    return make_dataset(OF_PEOPLE)
+
+
+@pytest.mark.parametrize(
+    ("name", "perfect"), [(SMALL, "PE 1 and ED 1"), (OF_PEOPLE, "Where 1 and Turn 1")]
+)
+def test_a_data_set_that_was_made_here_is_right(name, perfect, home):
+    make_dataset(name)
+    claims = list(verify_dataset(name))
     assert any("fingerprint" in claim for claim in claims)
-    assert any("PE 1 and ED 1" in claim for claim in claims)
+    assert any(perfect in claim for claim in claims)
+
+
+@pytest.mark.parametrize(
+    ("column", "frame", "value", "said"),
+    [
+        ("chosen_index", 2, 76, "outside the instance set"),
+        ("preference", 5, 1, "episode 0 does not have the user"),
+        ("next.reward", 0, 1, "the rewards of episode 0"),
+    ],
+)
+def test_a_wrong_value_of_the_second_tier_is_found(root_of_people, column, frame, value, said):
+    spoil(root_of_people, column, frame, value)
+    write_manifest(OF_PEOPLE, root_of_people)
+    with pytest.raises(ValueError, match=said):
+        list(verify_dataset(OF_PEOPLE))
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (lambda numbers: numbers[:1], "1 certificates, not 2"),
+        (lambda numbers: [numbers[0], numbers[1] - 0.01], "the certificate of episode 1"),
+    ],
+)
+def test_a_wrong_certificate_is_found(root_of_people, change, said):
+    path = root_of_people / CERTIFICATES
+    certificates = json.loads(path.read_text())
+    path.write_text(json.dumps({name: change(values) for name, values in certificates.items()}))
+    write_manifest(OF_PEOPLE, root_of_people)
+    with pytest.raises(ValueError, match=said):
+        list(verify_dataset(OF_PEOPLE))
 
 
 def test_a_data_set_that_is_not_there_is_told(root):

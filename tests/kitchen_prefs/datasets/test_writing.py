@@ -9,20 +9,28 @@ import pytest
 
 from kitchen_prefs.datasets import make_dataset
 from kitchen_prefs.datasets.columns import (
-    FEATURES,
     FPS,
     ROBOT_TYPE,
     SETS,
     columns_of,
+    features_of,
     read_columns,
 )
 from kitchen_prefs.datasets.names import content_of
 from kitchen_prefs.envs.demonstrations import demonstrate
+from kitchen_prefs.envs.people_demonstrations import demonstrate_people
+from kitchen_prefs.people.sessions import make_people_session
 from kitchen_prefs.simulation.sessions import make_session
 
 pytestmark = pytest.mark.xdist_group("writing")  # one fixture of the module serves all
 
 SMALL = "dishwasher-train-p2-d2-v1"
+DEMONSTRATE = {
+    SMALL: lambda *session: demonstrate(make_session(*session)),
+    "dishwasher-people_train-u2-v2": lambda *session: demonstrate_people(
+        make_people_session(*session)
+    ),
+}
 
 
 def test_the_files_do_not_depend_on_the_number_of_workers(small, home):
@@ -31,14 +39,16 @@ def test_the_files_do_not_depend_on_the_number_of_workers(small, home):
     assert _contents(alone) == _contents(small)
 
 
-def test_lerobots_own_writer_would_write_the_same_and_statistics_of_the_sets(small, home):
+@pytest.mark.parametrize("name", DEMONSTRATE)
+def test_lerobots_own_writer_would_write_the_same_and_statistics_of_the_sets(name, home):
     from lerobot.datasets import LeRobotDataset
 
+    small, features = make_dataset(name), features_of(name)
     written = LeRobotDataset.create(
-        "kitchen_prefs/by_lerobot", FPS, FEATURES, home / "by_lerobot", ROBOT_TYPE, use_videos=False
+        "kitchen_prefs/by_lerobot", FPS, features, home / "by_lerobot", ROBOT_TYPE, use_videos=False
     )
-    for session in content_of(SMALL).sessions:
-        demonstration = demonstrate(make_session(*session))
+    for session in content_of(name).sessions:
+        demonstration = DEMONSTRATE[name](*session)
         columns = columns_of(demonstration)
         for frame in range(len(columns["action"])):
             values = {name: np.atleast_1d(column[frame]) for name, column in columns.items()}

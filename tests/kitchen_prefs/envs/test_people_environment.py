@@ -7,6 +7,7 @@ from gymnasium.utils.env_checker import check_env
 
 import kitchen_prefs  # noqa: F401  (registers the environment)
 from kitchen_prefs import instances
+from kitchen_prefs.envs.people_demonstrations import demonstrate_people
 from kitchen_prefs.metrics.people_episode import PEOPLE_METRICS, care, headline, where
 from kitchen_prefs.people.attributes import RGB
 from kitchen_prefs.people.splits import PEOPLE_SPLITS
@@ -110,6 +111,20 @@ def test_a_prompt_marks_one_row_of_each_decision():
         chosen = prompt[prompt[:, instances.DESCRIBED_COLUMNS] > 0]
         assert len(chosen) == len(shown.trajectory.decisions)
         assert chosen[:, instances.DECISION].tolist() == list(range(len(chosen)))
+
+
+@pytest.mark.parametrize("index", [0, 1])
+def test_a_recorded_demonstration_is_what_the_environment_shows_and_rewards(index):
+    environment = made("people_evening")
+    observation, _ = environment.reset(options={"session": index})
+    shown = demonstrate_people(environment.session)
+    for decision in range(len(shown.done)):
+        assert np.array_equal(observation["instances"], shown.instances[decision])
+        assert np.array_equal(observation["environment_state"], shown.environment_state[decision])
+        assert np.array_equal(observation["agent_pos"], shown.state[decision])
+        observation, reward, terminated, *_ = environment.step(shown.action[decision])
+        assert reward == shown.reward[decision]
+        assert terminated == shown.done[decision] == shown.success[decision]
 
 
 def test_it_says_whose_evening_it_is():
