@@ -28,7 +28,7 @@ BENCHMARK = {
     "physics": "people preferences simulation splits utils",
     "rendering": "people physics preferences simulation utils",
     "envs": "instances metrics people preferences rendering simulation splits utils",
-    "datasets": "envs instances metrics preferences rendering simulation splits utils",
+    "datasets": "envs instances metrics people preferences rendering simulation splits utils",
     "evaluation": "datasets envs metrics people simulation splits utils",
     "web": "preferences simulation splits",
     "cli": "datasets evaluation physics",

@@ -6,7 +6,10 @@ writing       LeRobot's files, written on all cores
 manifest      what a data set says about itself
 loading       make on demand, and load
 drawing       a copy with a drawing of each decision
+certificates  how sure the exact reader is of each episode of the second tier
 verification  everything a data set must satisfy
+  stored_data     a data set as its files hold it
+  episode_checks  each episode is what the user of its session does
 cards         a card for each data set
 hub_upload    to the Hugging Face hub
 publishing    fingerprints and cards of the published data sets
