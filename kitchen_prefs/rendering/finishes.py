@@ -70,8 +70,8 @@ def layers(category: str, number: int, look: Look | None) -> tuple[Layer, ...]:
 
 
 def _ceramic(category: str, rgba: RGBA) -> tuple[Layer, ...]:
-    rim = Layer(f"{category} bare rim", (*CLAY, 1.0), 0.1, 0.1)
-    return (Layer(category, rgba, 0.9, 0.8), rim)
+    clay = Layer(f"{category} bare rim", (*CLAY, 1.0), 0.1, 0.1)
+    return (Layer(category, rgba, 0.9, 0.8), clay)
 
 
 def _glass(category: str, rgba: RGBA) -> tuple[Layer, ...]:

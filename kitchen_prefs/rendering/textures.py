@@ -3,6 +3,8 @@
 import numpy as np
 from scipy.ndimage import gaussian_filter1d, zoom
 
+from kitchen_prefs.rendering.palette import WOOD
+
 SEED = 7  # of all textures; any other gives another piece of wood
 SIZE = 1024  # pixels along each side; every count of rows and columns divides it
 
@@ -26,7 +28,9 @@ def ash() -> np.ndarray:
     """One pale board with dark growth rings, for wooden dishes, (SIZE, SIZE, 3) uint8."""
     rings = _streaks(np.random.default_rng(SEED + 4), SIZE, 20.0)
     years = 12 * np.linspace(0, 1, SIZE, endpoint=False)[:, None] + 0.6 * rings
-    return _painted(1.0 - 0.35 * np.maximum(np.sin(2 * np.pi * years), 0.0) ** 2, (226, 186, 130))
+    red, green, blue = (round(255 * part) for part in WOOD)
+    dark = np.maximum(np.sin(2 * np.pi * years), 0.0) ** 2
+    return _painted(1.0 - 0.35 * dark, (red, green, blue))
 
 
 def tiles() -> np.ndarray:
