@@ -6,8 +6,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import kitchen_prefs
-from kitchen_prefs.datasets import load_dataset
+from kitchen_prefs.datasets import load_dataset, make_dataset
+from kitchen_prefs.datasets.drawing import draw_dataset
 from kitchen_prefs.datasets.names import content_of
+from kitchen_prefs.datasets.prompt_reading import read_prompt
 from kitchen_prefs.people.splits import PEOPLE_DATA_VERSION, PEOPLE_SPLITS
 from kitchen_prefs.splits import DATA_VERSION, SPLITS
 
@@ -95,3 +97,12 @@ def test_another_version_is_refused_with_the_one_that_exists():
 
 def test_a_name_may_be_lerobots_repo_id():
     assert content_of(f"kitchen_prefs/{SMALL}") == content_of(SMALL)
+
+
+def test_what_the_second_tier_does_not_have_is_told(home):
+    name = "dishwasher-people_train-u1-v2"
+    with pytest.raises(ValueError, match="no drawings; draw a data set of the first"):
+        draw_dataset(name)
+    make_dataset(name)
+    with pytest.raises(ValueError, match=r"is of the second tier.*give a data set of the first"):
+        read_prompt(name)
