@@ -40,6 +40,10 @@ POLICIES = {
         "kitchen_prefs.datasets kitchen_prefs.envs kitchen_prefs.instances kitchen_prefs.simulation"
     ),
     "ttp": "common kitchen_prefs.datasets kitchen_prefs.envs kitchen_prefs.instances",
+    "ttp_plan": (
+        "common ttp kitchen_prefs.datasets kitchen_prefs.envs kitchen_prefs.instances "
+        "kitchen_prefs.people kitchen_prefs.simulation"
+    ),
     "gnn": (
         "common kitchen_prefs.datasets kitchen_prefs.envs kitchen_prefs.instances "
         "kitchen_prefs.preferences"
@@ -50,7 +54,7 @@ POLICIES = {
         "kitchen_prefs.utils"
     ),
     "__init__": (
-        "common gnn rules ttp kitchen_prefs.datasets kitchen_prefs.envs kitchen_prefs.utils"
+        "common gnn rules ttp ttp_plan kitchen_prefs.datasets kitchen_prefs.envs kitchen_prefs.utils"
     ),
 }
 EXPERIMENTS = {

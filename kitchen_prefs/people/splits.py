@@ -8,6 +8,9 @@ from kitchen_prefs.utils.suggestions import suggest
 PEOPLE_DATA_VERSION = 2
 
 COUNTS = (16, 17, 18)  # of dishes, in turn
+# A prompt of two demonstrations is of two users, and it is said whose evening it is; one of one or
+# of three is of one user.
+PROMPTS_OF_TWO_USERS = 2
 SLIPS = 0.1  # the share of dishes that an inconsistent user puts elsewhere
 
 
@@ -79,7 +82,11 @@ PEOPLE_SPLITS = {
         PeopleSplit("people_overflow", 200, "what happens when it is full", counts=(24,)),
         PeopleSplit("people_polls", 200, "zones as polls tell of real homes", polled=True),
         PeopleSplit(
-            "people_evening", 200, "whose evening it is, of two users", prompts=2, evening=True
+            "people_evening",
+            200,
+            "whose evening it is, of two users",
+            prompts=PROMPTS_OF_TWO_USERS,
+            evening=True,
         ),
     )
 }

@@ -21,10 +21,10 @@ from kitchen_prefs.instances import (
     is_real,
 )
 
-from .instance_sets import LARGEST_DISH, is_dish
+from .instance_sets import is_dish
 
 # m; two of the largest dishes touch at that distance at most. The door and the racks block nothing.
-REACH = LARGEST_DISH
+REACH = 0.4
 SHARPNESS = 500.0  # 1 / m; shapes that overlap by 2 mm collide with a probability of .73
 # A shape is initialised as the wall and the bottom of an elliptical cylinder: the radius and the
 # height of rings of six spheres, in halves of the extents.

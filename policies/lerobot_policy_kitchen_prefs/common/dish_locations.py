@@ -9,12 +9,16 @@ from typing import Any
 from kitchen_prefs.instances import IS_OBJECT, POSITION
 from kitchen_prefs.simulation.layout import COUNTER_HEIGHT, RACK_CLOSED, SINK_CENTRE, SINK_SIZE
 
-_, Y, Z = range(POSITION.start, POSITION.stop)
+X, Y, Z = range(POSITION.start, POSITION.stop)
 
 # Each bound leaves 10 cm or more on both sides, ten standard deviations of perception's errors.
 COUNTER_LEVEL = COUNTER_HEIGHT - 0.1  # m; dishes on the counter are above it
 SINK_FRONT = SINK_CENTRE[1] - SINK_SIZE[1] / 2  # m; dishes in a rack are in front of it
 TOP_RACK_LEVEL = RACK_CLOSED["top"][2]  # m; the floor of the top rack
+RACK_MIDDLE = RACK_CLOSED["top"][0]  # m; both racks have a left and a right half
+
+ZONES = 4  # the halves of the top and of the bottom rack
+ELSEWHERE = ZONES  # in the sink, or on the counter
 
 
 def in_rack(rows: Any) -> Any:
@@ -30,3 +34,13 @@ def in_top_rack(rows: Any) -> Any:
 def on_counter(rows: Any) -> Any:
     """Which dishes, rows (..., D), are on the counter, (...) bool."""
     return (rows[..., IS_OBJECT] > 0) & ~in_rack(rows)
+
+
+def zone_of(rows: Any) -> Any:
+    """The zones of dishes or places, rows (..., D), (...) int: one of ZONES, or ELSEWHERE.
+
+    Top left, top right, bottom left, bottom right, as in `kitchen_prefs.people.zones`.
+    """
+    racked = in_rack(rows)
+    zone = 2 * ~in_top_rack(rows) + 1 * (rows[..., X] >= RACK_MIDDLE)
+    return racked * zone + ~racked * ELSEWHERE

@@ -13,7 +13,7 @@ from torch import Tensor, nn
 from kitchen_prefs.envs.actions import METRES_PER_RADIAN
 from kitchen_prefs.instances import IS_PLACE, POSITION, QUATERNION, choosable
 
-from .categories import Categories
+from .instance_sets import is_dish
 
 # The nearest row to the last choice is the same instance if it is this near: perception errs by a
 # centimetre each time. Dishes in a rack can be nearer than that, but then they are not the nearest.
@@ -69,18 +69,15 @@ class FailedChoices:
         return nearest & (distance < SAME)
 
 
-def synthesise_failures(
-    sets: Tensor, targets: Tensor, categories: Categories, generator: np.random.Generator
-) -> Tensor:
+def synthesise_failures(sets: Tensor, targets: Tensor, generator: np.random.Generator) -> Tensor:
     """Draw which rows have failed before the expert chose.
 
     A place, a rack or the door that the expert chose has not failed before. A dish may have slipped
     from the gripper.
 
     Args:
-        sets: Sets, observed without noise, (B, N, 13).
+        sets: Sets, (B, N, D).
         targets: The rows that the expert chose, (B,) int64.
-        categories: The categories of dishes.
         generator: Source of randomness.
 
     Returns:
@@ -90,7 +87,7 @@ def synthesise_failures(
     drawn &= generator.random((len(sets), 1), dtype=np.float32) < SHARE_OF_SITUATIONS
     situations = torch.arange(len(sets), device=sets.device)
     target = sets[situations, targets]  # (B, 13)
-    may_slip = categories.find(target)[1] & (target[:, IS_PLACE] == 0)  # (B,)
+    may_slip = is_dish(target)  # (B,)
     may_fail = choosable(sets)
     may_fail[situations, targets] = may_slip
     return torch.from_numpy(drawn).to(sets.device) & may_fail

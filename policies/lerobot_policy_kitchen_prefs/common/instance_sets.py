@@ -5,8 +5,8 @@ from torch import Tensor
 
 from kitchen_prefs.instances import EXTENTS, IS_OBJECT, POSE, choosable, is_place_decision, is_real
 
-# m, from corner to corner: the largest dishes have 36 cm, the door and the racks more than this.
-LARGEST_DISH = 0.4
+# m, from corner to corner: the largest dishes have 36 cm, 41 in the second tier, the racks 75.
+LARGEST_DISH = 0.5
 
 
 def is_dish(rows: Tensor) -> Tensor:

@@ -7,7 +7,7 @@ from lerobot.utils.constants import ACTION
 from torch import Tensor
 
 from kitchen_prefs.envs.lerobot_env import OBS_INSTANCES, OBS_PREFERENCE
-from kitchen_prefs.instances import COLUMNS, as_rows
+from kitchen_prefs.instances import COLUMNS, DESCRIBED_COLUMNS, as_rows
 
 POSE_SIZE = 7  # position and quaternion
 
@@ -22,9 +22,19 @@ def check_sets_and_poses(config: PreTrainedConfig) -> None:
     _check(config, ACTION, config.output_features, lambda shape: shape == (POSE_SIZE,))
 
 
+def has_descriptions(config: PreTrainedConfig) -> bool:
+    """Whether a policy's sets have rows of 21 numbers, as in the second tier."""
+    feature = (config.input_features or {}).get(OBS_INSTANCES)
+    return feature is not None and _has_columns(tuple(feature.shape), DESCRIBED_COLUMNS)
+
+
 def _is_set(shape: tuple[int, ...]) -> bool:
-    """Whether a shape is (N, 13), or (N 13,) as data sets have it."""
-    return shape[1:] == (COLUMNS,) or (len(shape) == 1 and shape[0] % COLUMNS == 0)
+    """Whether a shape is (N, 13) or (N, 21), or flat, as data sets have it."""
+    return _has_columns(shape, COLUMNS) or _has_columns(shape, DESCRIBED_COLUMNS)
+
+
+def _has_columns(shape: tuple[int, ...], columns: int) -> bool:
+    return shape[1:] == (columns,) or (len(shape) == 1 and shape[0] % columns == 0)
 
 
 def _check(
@@ -37,8 +47,9 @@ def _check(
     if feature is None or not fits(tuple(feature.shape)):
         found = "is missing" if feature is None else f"has the shape {tuple(feature.shape)}"
         raise ValueError(
-            f"{config.type!r} takes sets of rows of {COLUMNS} numbers and returns a pose of "
-            f"{POSE_SIZE}, but {name!r} {found}; use a data set or an environment of kitchen_prefs."
+            f"{config.type!r} takes sets of rows of {COLUMNS} or {DESCRIBED_COLUMNS} numbers and "
+            f"returns a pose of {POSE_SIZE}, but {name!r} {found}; use a data set or an "
+            "environment of kitchen_prefs."
         )
 
 

@@ -114,7 +114,7 @@ class GNNPolicy(PreTrainedPolicy):
         if self.training and self.config.failures:
             # The draws depend on the batch alone, so that a resumed run repeats an unbroken one.
             generator = np.random.default_rng(batch["index"].cpu().numpy())
-            failed = synthesise_failures(sets, targets, self.categories, generator)
+            failed = synthesise_failures(sets, targets, generator)
         scores = self.network(sets, failed, labels).scores  # (B, N)
         correct = scores.argmax(dim=1) == targets
         return F.cross_entropy(scores, targets), accuracies(correct, is_place_decision(sets))

@@ -8,7 +8,7 @@ from kitchen_prefs import instances
 from kitchen_prefs.people.evidence import Evidence, evidence_of
 from kitchen_prefs.people.posterior import Posterior
 from kitchen_prefs.people.sessions import people_table
-from kitchen_prefs.people.splits import SLIPS
+from kitchen_prefs.people.splits import PROMPTS_OF_TWO_USERS, SLIPS
 from kitchen_prefs.people.yardsticks import Shown, shown_in
 from kitchen_prefs.simulation.kitchen import Kitchen
 from lerobot_policy_kitchen_prefs.rules.observed_dishes import counter_rows, dishes_of
@@ -16,9 +16,6 @@ from lerobot_policy_kitchen_prefs.rules.observed_kitchen import instance_at
 from lerobot_policy_kitchen_prefs.rules.preference_inference import decisions_of
 
 Decision = tuple[np.ndarray, int]  # an instance set, (n, 21), and its chosen row
-
-# Two demonstrations are of two users, and it is said whose evening it is; one or three are of one.
-PROMPTS_OF_TWO_USERS = 2
 
 
 def what_is_shown(prompt: np.ndarray, evening: int) -> Shown:

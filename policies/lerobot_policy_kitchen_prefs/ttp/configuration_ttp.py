@@ -8,7 +8,7 @@ from lerobot.optim import LRSchedulerConfig, OptimizerConfig, SGDConfig
 
 from kitchen_prefs.instances import DECISION, EXTENTS, POSE
 
-from ..common.lerobot_features import check_sets_and_poses
+from ..common.lerobot_features import check_sets_and_poses, has_descriptions
 from ..common.training_presets import check_one_optimizer
 from .scheduler import ExponentialDecaySchedulerConfig
 
@@ -35,6 +35,7 @@ class TTPConfig(PreTrainedConfig):
         dim_extents: Size of the category embedding.
         dim_time: Size of the time embedding.
         dim_marker: Size of the object-or-place embedding.
+        dim_description: Size of the embedding of colour, material and soil, where dishes have them.
         dim_feedforward: Hidden size of the feed-forward layers.
         n_heads: Attention heads of each layer.
         n_encoder_layers: Layers of the prompt encoder.
@@ -84,6 +85,7 @@ class TTPConfig(PreTrainedConfig):
     dim_extents: int = 64
     dim_time: int = 32
     dim_marker: int = 32
+    dim_description: int = 32
     dim_feedforward: int = 512
     n_heads: int = 2
     n_encoder_layers: int = 2
@@ -190,7 +192,13 @@ class TTPConfig(PreTrainedConfig):
     @property
     def dim(self) -> int:
         """The size d of an instance's embedding."""
-        return self.dim_pose + self.dim_extents + self.dim_time + self.dim_marker
+        description = self.dim_description if self.described else 0
+        return self.dim_pose + self.dim_extents + self.dim_time + self.dim_marker + description
+
+    @property
+    def described(self) -> bool:
+        """Whether the sets are of the second tier, whose dishes are described."""
+        return has_descriptions(self)
 
     def get_optimizer_preset(self) -> OptimizerConfig:
         """The optimiser that trained the checkpoint, or else the paper's."""

@@ -61,8 +61,11 @@ class TTPPolicy(PreTrainedPolicy):
         if dataset_meta is not None:
             chosen_only = config.prompt_tokens == "chosen"
             self.demonstrations = DemonstrationStore.read(dataset_meta, chosen_only)
-            self.categories = Categories.from_demonstrations(self.demonstrations)
-            self.rack_poses = RackPoses.from_demonstrations(self.demonstrations, self.categories)
+            if config.relabel and not config.described:
+                self.categories = Categories.from_demonstrations(self.demonstrations)
+                self.rack_poses = RackPoses.from_demonstrations(
+                    self.demonstrations, self.categories
+                )
             if self.recognition:
                 self.recognition.fit(self.demonstrations)
         self.reset()
@@ -148,7 +151,7 @@ class TTPPolicy(PreTrainedPolicy):
             )
             pairs = pairs._replace(prompts=prompts, sets=relabelled)
         if self.training and self.config.failures:
-            failed = synthesise_failures(pairs.sets, pairs.targets, self.categories, generator)
+            failed = synthesise_failures(pairs.sets, pairs.targets, generator)
         return pairs, Situations(pairs.sets, failed, history[pairs.sample])
 
     # Acting ----------------------------------------------------------------------------------

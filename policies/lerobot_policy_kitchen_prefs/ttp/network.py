@@ -13,7 +13,9 @@ import torch.nn.functional as F
 from torch import Tensor, nn
 
 from kitchen_prefs.instances import (
+    COLUMNS,
     DECISION,
+    DESCRIBED_COLUMNS,
     EXTENTS,
     IS_OBJECT,
     IS_PLACE,
@@ -103,6 +105,20 @@ class MarkerEncoder(nn.Module):
         return self.table((is_object + 2 * is_place).long())
 
 
+class DescriptionEncoder(nn.Module):
+    """An MLP on colour, material and soil, which the dishes of the second tier have."""
+
+    def __init__(self, dim: int) -> None:
+        """Make an encoder of `dim` dimensions."""
+        super().__init__()
+        described = DESCRIBED_COLUMNS - COLUMNS
+        self.layers = nn.Sequential(nn.Linear(described, dim), nn.GELU(), nn.Linear(dim, dim))
+
+    def forward(self, description: Tensor) -> Tensor:
+        """Embed descriptions (..., 8) as (..., dim)."""
+        return self.layers(description)
+
+
 TIME_ENCODERS = {"table": TimeEncoder, "fourier": FourierTimeEncoder}
 CATEGORY_ENCODERS = {
     "fourier": CategoryEncoder,
@@ -117,6 +133,8 @@ class InstanceEncoder(nn.Module):
 
         f_e(x_i) = Phi_t(time) || Phi_c(category) || Phi_p(pose) || Phi_r(object or place) = e_i
 
+    In the second tier, whose dishes are described, e_i has a fifth part for that.
+
     A row of zeros is an ACT token (paper, "a zero vector for all attributes").
     """
 
@@ -127,18 +145,19 @@ class InstanceEncoder(nn.Module):
         self.extents = CATEGORY_ENCODERS[config.extents_encoding](config.dim_extents)
         self.pose = POSE_ENCODERS[config.pose_encoding](config.dim_pose)
         self.marker = MarkerEncoder(config.dim_marker)
+        self.description = DescriptionEncoder(config.dim_description) if config.described else None
 
     def forward(self, rows: Tensor) -> Tensor:
-        """Embed rows (..., 13) as (..., d)."""
-        return torch.cat(
-            [
-                self.time(rows[..., DECISION]),
-                self.extents(rows[..., EXTENTS]),
-                self.pose(rows[..., POSITION], rows[..., QUATERNION]),
-                self.marker(rows[..., IS_OBJECT], rows[..., IS_PLACE]),
-            ],
-            dim=-1,
-        )
+        """Embed rows (..., 13), or (..., 21) where dishes are described, as (..., d)."""
+        parts = [
+            self.time(rows[..., DECISION]),
+            self.extents(rows[..., EXTENTS]),
+            self.pose(rows[..., POSITION], rows[..., QUATERNION]),
+            self.marker(rows[..., IS_OBJECT], rows[..., IS_PLACE]),
+        ]
+        if self.description:
+            parts.append(self.description(rows[..., COLUMNS:]))
+        return torch.cat(parts, dim=-1)
 
 
 # Slot attention f_slot ---------------------------------------------------------------------------

@@ -26,6 +26,11 @@ class Tokens:
         """The same tokens with other features."""
         return replace(self, features=features)
 
+    def joined(self, count: int) -> Self:
+        """The tokens of every `count` sets as those of one."""
+        parts = (part.unflatten(0, (-1, count)).flatten(1, 2) for part in vars(self).values())
+        return type(self)(*parts)
+
 
 class Attention(nn.Module):
     """Multi-head attention of tokens to a memory."""

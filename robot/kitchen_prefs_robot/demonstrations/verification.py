@@ -46,7 +46,10 @@ def verify_demonstrations(name: str, root: Path) -> Iterator[str]:
     published = json.loads(FINGERPRINTS.read_text()).get(name)
     found = fingerprint(columns, read_tasks(root))
     if published not in (None, found):
-        raise ValueError(f"{root} differs from the published {name}: its rows are others.")
+        raise ValueError(
+            f"{root} differs from the published {name}: its rows are others. Demonstrations made "
+            "with another OpenGL than Mesa's differ by rounding; use them under another name."
+        )
     yield f"Its fingerprint is {found}{'' if published else ', and none is published yet'}."
 
 

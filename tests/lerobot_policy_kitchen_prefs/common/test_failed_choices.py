@@ -110,7 +110,7 @@ def test_a_success_in_one_episode_leaves_the_failures_of_the_others():
 @settings(max_examples=30, deadline=None)
 @given(seed=SEEDS)
 def test_synthesised_failures_are_choices_that_may_have_failed(pairs, categories, seed):
-    marks = synthesise_failures(pairs.sets, pairs.targets, categories, np.random.default_rng(seed))
+    marks = synthesise_failures(pairs.sets, pairs.targets, np.random.default_rng(seed))
     assert not (marks & ~choosable(pairs.sets)).any()
     situations = torch.arange(len(pairs.sets))
     target = pairs.sets[situations, pairs.targets]
@@ -122,7 +122,7 @@ def test_synthesised_failures_are_choices_that_may_have_failed(pairs, categories
 def test_synthesised_failures_leave_some_situations_alone_and_spare_no_kind(pairs, categories):
     generator = np.random.default_rng(0)
     marks = torch.stack(
-        [synthesise_failures(pairs.sets, pairs.targets, categories, generator) for _ in range(40)]
+        [synthesise_failures(pairs.sets, pairs.targets, generator) for _ in range(40)]
     )
     situations = torch.arange(len(pairs.sets))
     is_place = (pairs.sets[..., IS_PLACE] > 0).any(dim=1)

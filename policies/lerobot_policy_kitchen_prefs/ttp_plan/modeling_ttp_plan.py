@@ -1,0 +1,192 @@
+"""TTP with a plan as a LeRobot policy: it learns to plan and to decide from the same batches."""
+
+from typing import Any
+
+import numpy as np
+import torch
+import torch.nn.functional as F
+from lerobot.datasets import LeRobotDatasetMetadata
+from lerobot.utils.constants import ACTION, OBS_STATE
+from torch import Tensor
+
+from kitchen_prefs.datasets.demonstration_store import DemonstrationStore
+from kitchen_prefs.envs.lerobot_env import OBS_INSTANCES, OBS_PROMPT
+from kitchen_prefs.instances import DECISION, POSE, as_rows, choosable, is_place_decision
+from kitchen_prefs.people.splits import PROMPTS_OF_TWO_USERS
+
+from ..common.failed_choices import FailedChoices, synthesise_failures
+from ..common.instance_sets import accuracies, chosen_rows, length_buckets
+from ..common.lerobot_features import observed, observed_sets
+from ..ttp.modeling_ttp import TTPPolicy
+from ..ttp.prompt_tokens import split_prompts, tokens_of_prompts
+from .augmentation import Augmentation
+from .configuration_ttp_plan import PlanTTPConfig
+from .dish_tokens import PlacedDishes, placed_dishes, read_placed
+from .network import PlanNetwork, PlanSituations, Preferences
+from .plan_reader import DESTINATIONS
+from .rack_state import RackMemory
+
+
+class PlanTTPPolicy(TTPPolicy):
+    """Transformer Task Planner with a plan reader, for people's rules on attributes."""
+
+    config_class = PlanTTPConfig
+    name = "ttp_plan"
+    network: PlanNetwork
+    config: PlanTTPConfig
+
+    def __init__(
+        self, config: PlanTTPConfig, dataset_meta: LeRobotDatasetMetadata | None = None, **_: Any
+    ) -> None:
+        """Make the network, and read the demonstrations; arguments are those of `TTPPolicy`."""
+        super().__init__(config, dataset_meta)
+        self.network = PlanNetwork(config)
+        if dataset_meta is not None:
+            whole = DemonstrationStore.read(dataset_meta, chosen_only=False)
+            self._placed = read_placed(whole)
+
+    # Training --------------------------------------------------------------------------------
+
+    def forward(self, batch: dict[str, Tensor]) -> tuple[Tensor, dict[str, float]]:
+        """The loss of decisions and that of plans.
+
+        Args:
+            batch: LeRobot's batch of B frames: the sets, the actions and the episodes.
+
+        Returns:
+            The sum of the cross-entropies of the expert's choices, of the destinations of all
+            dishes of the frames' episodes, and of which of two dishes of one
+            rack is picked first; and the shares of each that are right.
+
+        Raises:
+            ValueError: If the policy was made without a data set, or an action is no row's pose.
+        """
+        generator = np.random.default_rng(batch["index"].cpu().numpy())
+        episodes = batch["episode_index"].cpu().numpy()
+        sets = as_rows(batch[OBS_INSTANCES])  # (B, N, 21)
+        targets = chosen_rows(sets, batch[ACTION])  # (B,)
+        others = self._others(episodes, generator)
+        augmentation = Augmentation(len(sets), self.config, generator if self.training else None)
+        sets = augmentation.of_rows(sets)
+        own = augmentation.of_dishes(self._placed.select(torch.from_numpy(episodes)))
+        contents = own.contents_at(sets[..., DECISION].amax(dim=1))  # (B, 4, 7)
+        failed = torch.zeros(sets.shape[:2], dtype=torch.bool, device=sets.device)
+        if self.training:
+            failed = synthesise_failures(sets, targets, generator)
+        situations = PlanSituations(sets, failed, contents)
+        shown, asked = augmentation.split(own)
+        preference = self._preference_of(others, shown, augmentation)
+        decided = torch.arange(min(len(sets), self.config.decided), device=sets.device)
+        loss, facts = self._loss_of_decisions(
+            situations.select(decided), targets[decided], preference
+        )
+        plan_loss, plan_facts = self._loss_of_plans(asked, preference)
+        return loss + plan_loss, facts | plan_facts
+
+    def _others(self, episodes: np.ndarray, generator: np.random.Generator) -> np.ndarray:
+        """Another episode of each episode's user, (B,) int."""
+        store = self.demonstrations
+        if store is None:
+            raise ValueError(
+                "TTP draws its prompts from the training data set; make it with "
+                "dataset_meta=dataset.meta, as lerobot-train does."
+            )
+        drawn = [store.draw(store.preference[e], np.array([e]), generator) for e in episodes]
+        return np.array(drawn)
+
+    def _preference_of(
+        self, episodes: np.ndarray, own: PlacedDishes, augmentation: Augmentation
+    ) -> Preferences:
+        """Read episodes, and dishes that are shown beside them."""
+        assert self.demonstrations is not None
+        prompts = torch.from_numpy(self.demonstrations.prompts(list(episodes)))  # (B, P, 22)
+        prompts = augmentation.of_rows(prompts)
+        dishes = augmentation.of_dishes(self._placed.select(torch.from_numpy(episodes)))
+        dishes = augmentation.of_prompts(dishes).with_others(own)
+        return Preferences(
+            self.network.reader.encode(dishes, augmentation.names),
+            self.network.encode(*tokens_of_prompts(prompts, self.config.prompt_tokens)),
+        )
+
+    def _loss_of_decisions(
+        self, situations: PlanSituations, targets: Tensor, preference: Preferences
+    ) -> tuple[Tensor, dict[str, float]]:
+        is_place = is_place_decision(situations.sets)  # (B,)
+        losses, correct = situations.sets.new_zeros(len(is_place)), torch.zeros_like(is_place)
+        for bucket in length_buckets(situations.sets):
+            scores = self._score_rows(situations.select(bucket), preference, bucket)
+            losses[bucket] = F.cross_entropy(scores, targets[bucket], reduction="none")
+            correct[bucket] = scores.argmax(dim=1) == targets[bucket]
+        return losses.mean(), accuracies(correct, is_place)
+
+    def _loss_of_plans(
+        self, asked: PlacedDishes, preference: Preferences
+    ) -> tuple[Tensor, dict[str, float]]:
+        reader = self.network.reader
+        everyone = torch.arange(len(asked.mask), device=asked.mask.device)
+        plans = reader.plan(asked.attributes, preference.prompts, everyone)  # (B, n, d)
+        names = preference.prompts.names
+        scores = reader.destinations(plans, asked.attributes, asked.contents, names)[asked.mask]
+        zones = asked.zones[asked.mask]
+        turns = reader.turns(plans, asked.distances)  # (B, n)
+        in_order = (turns[:, None] - turns[:, :, None])[asked.preferred()]
+        loss = F.cross_entropy(scores, zones) + F.softplus(-in_order).mean()
+        return loss, {
+            "zone_accuracy": (scores.argmax(dim=1) == zones).float().mean().item(),
+            "order_accuracy": (in_order > 0).float().mean().item(),
+        }
+
+    # Acting ----------------------------------------------------------------------------------
+
+    def reset(self) -> None:
+        """Forget prompts, racks and failed choices: new episodes begin."""
+        self._preferences: Preferences | None = None
+        self._racks = RackMemory()
+        self._failed_choices = FailedChoices()
+
+    @torch.no_grad()
+    def select_action(self, batch: dict[str, Tensor], **_: Any) -> Tensor:
+        """Choose a row of each set.
+
+        Args:
+            batch: The observations of B environments. The prompts are read on the first call after
+                `reset`.
+            **_: Other arguments of LeRobot's.
+
+        Returns:
+            The poses of the chosen rows, (B, 7).
+
+        Raises:
+            ValueError: If the sets or, on the first call, the prompts are missing.
+        """
+        self.eval()
+        sets = observed_sets(batch)  # (B, N, 21)
+        if self._preferences is None:
+            self._preferences = self._read(observed(batch, OBS_PROMPT), observed(batch, OBS_STATE))
+        failed = self._failed_choices.find(sets)
+        situations = PlanSituations(sets, failed, self._racks.update(sets))
+        environments = torch.arange(len(sets), device=sets.device)  # (B,)
+        choices = self._score_rows(situations, self._preferences, environments).argmax(dim=1)
+        self._failed_choices.record(sets[environments, choices])
+        return sets[environments, choices][:, POSE]
+
+    def _read(self, prompts: Tensor, state: Tensor) -> Preferences:
+        """Read the demonstrations of B users: all, or that of whose evening it is."""
+        users, evening = len(prompts), state[:, -1].long()
+        demonstrations = split_prompts(prompts).unflatten(0, (users, -1))  # (B, V, P, 22)
+        if demonstrations.shape[1] == PROMPTS_OF_TWO_USERS:
+            demonstrations = demonstrations[torch.arange(users), evening][:, None]
+        count = demonstrations.shape[1]
+        demonstrations = demonstrations.flatten(0, 1)  # (B V, P, 22)
+        tokens = self.network.encode(*tokens_of_prompts(demonstrations, self.config.prompt_tokens))
+        dishes = placed_dishes(demonstrations).joined(count)
+        names = torch.arange(DESTINATIONS, device=evening.device).expand(users, -1)
+        return Preferences(self.network.reader.encode(dishes, names), tokens.joined(count))
+
+    def _score_rows(
+        self, situations: PlanSituations, preference: Preferences, prompt_of: Tensor
+    ) -> Tensor:
+        """Score the rows of B sets, cut to the M rows of the longest of them, (B, M)."""
+        situations = situations.trimmed()
+        scores = self.network.score_rows(situations, preference, prompt_of)
+        return scores.masked_fill(~choosable(situations.sets), -torch.inf)
