@@ -54,7 +54,8 @@ POLICIES = {
         "kitchen_prefs.utils"
     ),
     "__init__": (
-        "common gnn rules ttp ttp_plan kitchen_prefs.datasets kitchen_prefs.envs kitchen_prefs.utils"
+        "common gnn rules ttp ttp_plan kitchen_prefs.datasets kitchen_prefs.envs "
+        "kitchen_prefs.utils"
     ),
 }
 EXPERIMENTS = {
