@@ -10,6 +10,7 @@ import typer
 
 from benchmarks.data import loader_samples, making_episodes
 from benchmarks.kitchen import kitchen_decisions
+from benchmarks.people import people_beside_preferences
 from benchmarks.prompts import prompt_steps
 from benchmarks.training import training_steps
 
@@ -24,6 +25,7 @@ def main(out: Path = Path("outputs/benchmarks.json")) -> None:
     measures = (
         kitchen_decisions,
         making_episodes,
+        people_beside_preferences,
         loader_samples,
         training_steps,
         prompt_steps,
