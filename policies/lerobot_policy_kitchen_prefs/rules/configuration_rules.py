@@ -6,8 +6,8 @@ from lerobot.configs import NormalizationMode, PreTrainedConfig
 from lerobot.optim import AdamWConfig, OptimizerConfig
 from lerobot.utils.constants import OBS_STATE
 
-from kitchen_prefs import instances
 from kitchen_prefs.envs.lerobot_env import OBS_INSTANCES, OBS_PREFERENCE, OBS_PROMPT
+from kitchen_prefs.instances import DESCRIBED_COLUMNS
 from kitchen_prefs.people.yardsticks import YARDSTICKS
 from kitchen_prefs.utils.suggestions import suggest
 
@@ -63,7 +63,7 @@ class RulesConfig(PreTrainedConfig):
         """Check that the observation contains what the rule reads.
 
         Raises:
-            ValueError: If a key is missing, or the prompts are those of the other tier.
+            ValueError: If a key is missing.
         """
         for key in NEEDS[self.rule]:
             if key not in (self.input_features or {}):
@@ -72,7 +72,6 @@ class RulesConfig(PreTrainedConfig):
                     f"The rule {self.rule!r} needs {key!r}, which the observation does not "
                     f"contain.{hint}"
                 )
-        self._check_tier()
 
     @property
     def track(self) -> str:
@@ -94,14 +93,18 @@ class RulesConfig(PreTrainedConfig):
         """No rewards are read."""
         return None
 
-    def _check_tier(self) -> None:
-        """Check that prompts have the columns of the rule's tier; "random" takes both."""
-        prompt = (self.input_features or {}).get(OBS_PROMPT)
-        if prompt is None or self.rule == "random":
-            return
-        of_people = prompt.shape[-1] == instances.DESCRIBED_COLUMNS + 1
-        if of_people != (self.rule in PEOPLE_RULES):
-            tier = "second" if self.rule in PEOPLE_RULES else "first"
+    def check_tier(self, columns: int) -> None:
+        """Check that observed sets are of the rule's tier; "random" takes both.
+
+        Args:
+            columns: The columns of the sets' rows.
+
+        Raises:
+            ValueError: If they are not.
+        """
+        of_people, for_people = columns == DESCRIBED_COLUMNS, self.rule in PEOPLE_RULES
+        if self.rule != "random" and of_people != for_people:
+            tier = "second" if for_people else "first"
             fitting = [rule for rule in NEEDS if (rule in PEOPLE_RULES) == of_people]
             raise ValueError(
                 f"The rule {self.rule!r} is for splits of the {tier} tier; for this one there are "

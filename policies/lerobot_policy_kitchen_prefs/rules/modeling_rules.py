@@ -60,9 +60,13 @@ class RulesPolicy(PreTrainedPolicy):
 
         Returns:
             The chosen rows' poses, (B, 7).
+
+        Raises:
+            ValueError: If the rule is for observations of the other tier.
         """
         sets = [instances.unpad(padded) for padded in batch[OBS_INSTANCES].cpu().numpy()]
         if not self._choosers:  # an episode's first decision: read its prompt or label
+            self.config.check_tier(sets[0].shape[1])
             self._choosers = choosers_of(self.config.rule, batch, len(sets))
         rows = [choose_row(rows) for choose_row, rows in zip(self._choosers, sets, strict=True)]
         poses = [rows_[row, instances.POSE] for rows_, row in zip(sets, rows, strict=True)]

@@ -136,4 +136,4 @@ def test_lerobot_eval_rolls_a_rule_out():
 @pytest.mark.parametrize("rule", ["symbolic", "promptless"])
 def test_a_rule_of_the_first_tier_names_those_of_the_second(rule):
     with pytest.raises(ValueError, match=r"first tier; for this one there are people_promptless"):
-        make_rule(rule, "people_val")
+        rolled_out(rule, "people_partial", [0])
