@@ -87,12 +87,16 @@ class Augmentation:
         )
 
     def split(self, own: PlacedDishes) -> tuple[PlacedDishes, PlacedDishes]:
-        """Of the samples' own dishes those that are shown too, and those that are asked about."""
+        """Of the samples' own dishes those that are shown too, and those that are asked about.
+
+        To samples that teach decisions none are shown: their decisions are about these dishes.
+        """
         if self._generator is None:
             return own._replace(mask=torch.zeros_like(own.mask)), own
         count, n = own.mask.shape
         share = self._generator.uniform(0, SHOWN_OF_OWN, (count, 1))
         shown = self._drawn((count, 1), self._config.own_share) & self._drawn((count, n), share)
+        shown[: self._config.decided] = False
         second = torch.ones_like(own.demonstration)
         return (
             own._replace(mask=own.mask & shown, demonstration=second),

@@ -22,8 +22,9 @@ class PlanTTPConfig(TTPConfig):
         decided: How many samples of a batch teach decisions, which are learned sooner than plans;
             all of them teach plans.
         slip_share: In training, the share of prompts with slips, of which a user makes some.
-        own_share: In training, the share of samples to which some dishes of their own episode are
-            shown too, as more demonstrations would; they are not asked about.
+        own_share: In training, the share of the samples that teach plans alone to which some dishes
+            of their own episode are shown too, as more demonstrations would; they are not asked
+            about.
     """
 
     reader_dim: int = 128
