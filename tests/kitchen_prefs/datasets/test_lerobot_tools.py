@@ -21,22 +21,29 @@ from kitchen_prefs.instances import FLAT_SIZE
 
 ROOT = Path(__file__).parents[3]
 NAME = "kitchen_prefs/dishwasher-train-p2-d3-v1"  # six episodes
+PEOPLE = "kitchen_prefs/dishwasher-people_train-u3-v2"  # six, too
 DELETE = ["--operation.type=delete_episodes", "--operation.episode_indices=[0, 3]"]
 SPLIT = ["--operation.type=split", '--operation.splits={"first": 0.5, "second": 0.5}']
-MERGE = ["--operation.type=merge", "--operation.repo_ids=['own/four_second', 'own/four_first']"]
 REMOVE = ["--operation.type=remove_feature", "--operation.feature_names=['next.reward']"]
 STATS = ["--operation.type=recompute_stats", "--operation.overwrite=true"]
 TASKS = ["--operation.type=modify_tasks", "--operation.new_task=load it"]
-# Each works on what the one before has left.
-CHAIN = [
-    [f"--repo_id={NAME}", "--new_repo_id=own/four", *DELETE],
-    ["--repo_id=own/four", *SPLIT],
-    ["--new_repo_id=own/merged", *MERGE],
-    ["--repo_id=own/merged", "--new_repo_id=own/slim", *REMOVE],
-    ["--repo_id=own/slim", *STATS],
-    ["--repo_id=own/slim", *TASKS],
-    ["--repo_id=own/slim", *DELETE[:1], "--operation.episode_indices=[1]"],  # in place
-]
+
+
+def chain(name, own):
+    """Each works on what the one before has left; `own` is where copies lie."""
+    parts = f"['{own}/four_second', '{own}/four_first']"
+    return [
+        [f"--repo_id={name}", f"--new_repo_id={own}/four", *DELETE],
+        [f"--repo_id={own}/four", *SPLIT],
+        [f"--new_repo_id={own}/merged", "--operation.type=merge", f"--operation.repo_ids={parts}"],
+        [f"--repo_id={own}/merged", f"--new_repo_id={own}/slim", *REMOVE],
+        [f"--repo_id={own}/slim", *STATS],
+        [f"--repo_id={own}/slim", *TASKS],
+        [f"--repo_id={own}/slim", *DELETE[:1], "--operation.episode_indices=[1]"],  # in place
+    ]
+
+
+CHAINS = [*chain(NAME, "own"), *chain(PEOPLE, "people")]
 # One process, because LeRobot takes seconds to start.
 EDIT_ALL = """
 import json
@@ -60,9 +67,10 @@ def edited(made_once):
         with pytest.MonkeyPatch.context() as patch:
             patch.setenv("HF_LEROBOT_HOME", str(home))
             make_dataset(NAME)
+            make_dataset(PEOPLE)
         environment = {"HF_LEROBOT_HOME": str(home), "HF_HUB_OFFLINE": "1"}
         environment |= {"HF_DATASETS_CACHE": str(home / "cache")}
-        done = warm_python.run("-c", EDIT_ALL, json.dumps(CHAIN), env=os.environ | environment)
+        done = warm_python.run("-c", EDIT_ALL, json.dumps(CHAINS), env=os.environ | environment)
         assert done.returncode == 0, done.stderr[-3000:]
 
     return made_once("edited", fill)
@@ -77,17 +85,18 @@ def sets_of(table):
     return np.stack(table["observation.instances"].to_numpy())
 
 
-def test_episodes_are_deleted_split_and_merged_and_features_removed(edited):
-    before = frames_of(edited / NAME)
+@pytest.mark.parametrize(("name", "own"), [(NAME, "own"), (PEOPLE, "people")])
+def test_episodes_are_deleted_split_and_merged_and_features_removed(edited, name, own):
+    before = frames_of(edited / name)
     episode = before["episode_index"].to_numpy()
-    merged = frames_of(edited / "own/merged")
+    merged = frames_of(edited / own / "merged")
     expected = np.concatenate([sets_of(before)[episode == i] for i in (4, 5, 1, 2)])
     np.testing.assert_array_equal(sets_of(merged), expected)
-    after = frames_of(edited / "own/slim")
+    after = frames_of(edited / own / "slim")
     assert "next.reward" in before.column_names
     assert "next.reward" not in after.column_names
     assert len(set(after["episode_index"].to_pylist())) == 3
-    (task,) = pq.read_table(edited / "own/slim/meta/tasks.parquet")["task"].to_pylist()
+    (task,) = pq.read_table(edited / own / "slim/meta/tasks.parquet")["task"].to_pylist()
     assert task == "load it"
 
 
