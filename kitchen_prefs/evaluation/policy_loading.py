@@ -122,7 +122,7 @@ def load_policy(
             ask for, or else the standard one.
         below: The folder of the policy that an adapter was trained on; if not given, the one that
             the adapter names.
-        split: The split whose observations a checkpoint has to fit.
+        split: The split whose observations it has to fit.
 
     Returns:
         The policy, ready to act.
@@ -138,7 +138,7 @@ def load_policy(
             folder = find_checkpoint(path)
             found = Path(below) if below else find_policy_below(folder)
             return _trained(folder, options, track, found, split)
-        return _untrained(str(policy_type), options, track)
+        return _untrained(str(policy_type), options, track, split)
     except ParsingError as error:
         raise ValueError(f"The policy's settings are wrong: {error.__cause__ or error}") from error
 
@@ -158,18 +158,16 @@ def _trained(
     return LoadedPolicy(policy, preprocessor, postprocessor, environment.track, adapter)
 
 
-def _untrained(policy_type: str, options: Sequence[str], track: str | None) -> LoadedPolicy:
-    """Make a policy without weights; LeRobot's factory would warn that it lacks statistics.
-
-    It fits observations of any shape. Its settings name those of the split `seen`, whatever it is
-    evaluated on, so that one policy has one fingerprint.
-    """
+def _untrained(
+    policy_type: str, options: Sequence[str], track: str | None, split: str
+) -> LoadedPolicy:
+    """Make a policy without weights; LeRobot's factory would warn that it lacks statistics."""
     known = PreTrainedConfig.get_known_choices()
     if policy_type not in known:
         raise ValueError(f"There is no policy type {policy_type!r}. {suggest(policy_type, known)}")
     check_settings("The policy", setting_names(known[policy_type]), options)
     config = draccus.parse(known[policy_type], args=list(options))
-    environment = _environment(config, track, "seen")
+    environment = _environment(config, track, split)
     features = env_to_policy_features(environment)
     config.output_features = {ACTION: features.pop(ACTION)}
     config.input_features = features

@@ -51,7 +51,8 @@ class Tier:
         val: The split on which checkpoints are compared.
         test_splits: The splits of the leaderboard.
         make_environment: Its environment, of a split and what `environment` takes.
-        make_simulator: A session simulated, of a split, a session and a session seed (salt).
+        make_simulator: A session simulated, of a split, the session's index and, if it is not a
+            published one, its session seed (salt).
         varies: Whether anything but `USUAL` can be asked for.
         episode: The facts of its episodes.
         metrics: Its metrics, each a function of an episode.
@@ -77,7 +78,7 @@ class Tier:
     val: str
     test_splits: tuple[str, ...]
     make_environment: Callable[..., KitchenEnv]
-    make_simulator: Callable[[str, int, int], Simulator]
+    make_simulator: Callable[..., Simulator]
     varies: bool
     episode: type[Episode] | type[PeopleEpisode]
     metrics: Mapping[str, Callable[[Any], float | None]]

@@ -98,14 +98,18 @@ def load_policy_run(
 
     Raises:
         ValueError: If there is no such track, or if it cannot be loaded for a tier, see
-            `load_policy`.
+            `load_policy`, or is not one policy in all of them.
     """
+    loaded = []
     for tier in tiers:
-        loaded_policy = load_policy(**settings_on_track(path, policy_type, settings, track, tier))
-        tier.check(track=loaded_policy.track)
+        arguments = settings_on_track(path, policy_type, settings, track, tier)
+        loaded.append(load_policy(**arguments))
+        tier.check(track=loaded[-1].track)
+    if len({loaded_policy.fingerprint for loaded_policy in loaded}) > 1:
+        raise ValueError("The policy has other settings in each tier; submit one tier at a time.")
     splits = tuple(split for tier in tiers for split in tier.test_splits)
     policy = f"--policy.path={path}" if path else f"--policy.type={policy_type}"
-    return PolicyRun(loaded_policy, (policy, *settings, f"--track={loaded_policy.track}"), splits)
+    return PolicyRun(loaded[0], (policy, *settings, f"--track={loaded[0].track}"), splits)
 
 
 def settings_on_track(
@@ -118,7 +122,7 @@ def settings_on_track(
         policy_type: The type of a policy that needs no training.
         settings: Settings of the policy to override, as in `--policy.rule=symbolic`.
         track: What the policy observes; on the open track, the track of its own settings.
-        tier: The tier whose observations a checkpoint has to fit.
+        tier: The tier whose observations it has to fit.
 
     Raises:
         ValueError: If there is no such track or checkpoint, or an argument is no setting.

@@ -63,7 +63,7 @@ def _episodes(split: str, recordings: Path) -> list[AnyEpisode]:
 def _sessions_by_first_set(split: str) -> dict[bytes, int]:
     tier = tier_of(split)
     sessions = tqdm(range(tier.sessions(split)), f"Sessions of {split}", leave=False)
-    starts = (tier.make_simulator(split, i, 0).observation.rows for i in sessions)
+    starts = (tier.make_simulator(split, i).observation.rows for i in sessions)
     return {_key(rows): i for i, rows in enumerate(starts)}
 
 
@@ -88,7 +88,7 @@ def _recorded(recordings: Path) -> Iterator[tuple[np.ndarray, np.ndarray]]:
 
 
 def _replayed(split: str, session: int, actions: np.ndarray) -> AnyEpisode:
-    simulator = tier_of(split).make_simulator(split, session, 0)
+    simulator = tier_of(split).make_simulator(split, session)
     for action in actions:
         if simulator.terminated or simulator.truncated:
             raise ValueError(

@@ -9,8 +9,6 @@ from kitchen_prefs.simulation.counter_layout import POSE_DECIMALS
 from kitchen_prefs_leaderboard.submission_format import ACTIONS, FARTHEST, Line
 from kitchen_prefs_leaderboard.submission_reading import SubmissionFiles
 
-PUBLISHED = 0  # the session seed (salt) of the published sessions
-
 
 def replay_split(submission: SubmissionFiles, split: str) -> list[AnyEpisode]:
     """Replay a submission's episodes of a split.
@@ -38,7 +36,7 @@ def replay(split: str, line: Line, where: str) -> AnyEpisode:
         ValueError: If the first or the last state is not the one that the line names, or if the
             actions end too early or too late.
     """
-    simulator = tier_of(split).make_simulator(split, line.session, PUBLISHED)
+    simulator = tier_of(split).make_simulator(split, line.session)
     if simulator.digest() != line.first:
         raise ValueError(
             f"{where}: session {line.session} of {split} begins in another state than this."
@@ -63,8 +61,7 @@ def write_line(episode: AnyEpisode) -> Line:
     Args:
         episode: An episode of a published session.
     """
-    make_simulator = tier_of(episode.split).make_simulator
-    simulator = make_simulator(episode.split, episode.session, PUBLISHED)
+    simulator = tier_of(episode.split).make_simulator(episode.split, episode.session)
     first = simulator.digest()
     actions: list[Sequence[float]] = []
     for action, instance in zip(episode.actions, episode.decisions, strict=True):

@@ -12,7 +12,6 @@ import pytest
 from act_checkpoints import save_act
 from short_splits import short_splits
 
-from kitchen_prefs.envs.observations import STATE_SIZE
 from kitchen_prefs.evaluation.tiers import PEOPLE, PREFERENCES, TIERS
 from kitchen_prefs.metrics.people_intervals import summarise_people
 from kitchen_prefs_leaderboard.page.building import page_data
@@ -39,7 +38,7 @@ def few_sessions():
 
 def loaded_by_the_expert(tier, split, session, careless=False):
     """The expert's episode of a session; a careless one sinks the first dish."""
-    simulator = tier.make_simulator(split, session, 0)
+    simulator = tier.make_simulator(split, session)
     while not (simulator.terminated or simulator.truncated):
         action = simulator.expert_action()
         if careless and simulator.kitchen.held is not None:
@@ -246,16 +245,16 @@ def test_the_page_has_a_table_a_tier_and_draws_the_first_alone(entries, careless
 @pytest.mark.lerobot
 @pytest.mark.slow
 def test_a_policy_is_submitted_and_its_rerun_confirms_it(kitchen_prefs, tmp_path, capsys):
-    act = f"--policy.path={save_act(tmp_path / 'act', state_size=STATE_SIZE + 1)}"
-    submit = ("leaderboard", "submit", "--name=ACT", "--track=standard", "--tier=people", act)
-    assert kitchen_prefs(*submit, f"--out={tmp_path / 'act_people'}", "--jobs=1") == 0
-    verify = ("leaderboard", "verify", tmp_path / "act_people", "--rerun", "--salt=7", "--jobs=1")
+    rule, out = ("--policy.type=rules", "--policy.rule=people_zone"), tmp_path / "zone"
+    submit = ("leaderboard", "submit", "--name=Zone", "--track=standard", "--tier=people", *rule)
+    assert kitchen_prefs(*submit, f"--out={out}", "--jobs=1") == 0
+    verify = ("leaderboard", "verify", out, "--rerun", "--salt=7", "--jobs=1", *rule)
     folders = (f"--verifications={tmp_path / 'records'}", f"--out={tmp_path / 'reruns'}")
-    assert kitchen_prefs(*verify, *folders, act) == 0
+    assert kitchen_prefs(*verify, *folders) == 0
     shown = capsys.readouterr().out
     assert "Second tier: people, all test splits" in shown
     assert "The re-run confirms the submission" in shown
-    (entry,) = score_submissions([tmp_path / "act_people"], 1)
+    (entry,) = score_submissions([out], 1)
     (record,) = read_verifications(tmp_path / "records").values()
     assert record.digest == entry.digest
     assert list(record.scores) == list(PEOPLE.test_splits)
@@ -263,6 +262,15 @@ def test_a_policy_is_submitted_and_its_rerun_confirms_it(kitchen_prefs, tmp_path
     assert record.replayed.mean == pytest.approx(entry.metrics["mean"]["Rescaled"].mean, abs=1e-4)
     (ranked,) = rank_tiers([entry], {record.digest: record})["people"]["standard"]
     assert ranked.rank == 1
+
+
+@pytest.mark.lerobot
+def test_a_policy_that_differs_from_tier_to_tier_is_not_submitted_on_both(kitchen_prefs, tmp_path):
+    rule = ("--policy.type=rules", "--policy.rule=random", f"--out={tmp_path / 'out'}")
+    tiers = ("--tier=people", "--tier=preferences")
+    said = kitchen_prefs("leaderboard", "submit", "--name=R", "--track=standard", *tiers, *rule)
+    assert said.endswith("The policy has other settings in each tier; submit one tier at a time.")
+    assert not list(tmp_path.iterdir())
 
 
 @pytest.mark.lerobot

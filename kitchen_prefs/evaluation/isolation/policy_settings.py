@@ -23,7 +23,7 @@ def policy_settings(
         policy_type: The type of a policy that needs no training.
         options: Settings of the policy to override, as in `--rule=expert`.
         track: The track of the environment, see `load_policy`.
-        split: The split whose observations a checkpoint has to fit.
+        split: The split whose observations it has to fit.
 
     Raises:
         ValueError: If not exactly one of `path` and `policy_type` is given, or if a checkpoint is

@@ -12,7 +12,10 @@ function showFacts() {
 /** Charts and the viewer, of which a page without entries that they can draw has none. */
 function startDrawings() {
   const some = data.entries.some(isDrawn);
-  for (const id of ["charts", "episodes"]) byId(id).hidden = !some;
+  for (const id of ["charts", "episodes"]) {
+    byId(id).hidden = !some;
+    document.querySelector(`nav [href="#${id}"]`).hidden = !some;
+  }
   if (!some) return;
   drawCharts();
   startViewer();

@@ -193,7 +193,7 @@ function trackTable(track, entries, columns) {
   return html(
     "section",
     { class: "track", "data-track": track },
-    html("h3", {}, title, html("span", { class: "meaning" }, TRACKS[track])),
+    html("h4", {}, title, html("span", { class: "meaning" }, TRACKS[track])),
     html("div", { class: "scroll card", tabindex: 0, role: "region", "aria-label": title }, table),
   );
 }
