@@ -185,7 +185,8 @@ MEANINGS = {
 PEOPLE_MEANINGS = MEANINGS | {
     "observation.state": "joints, category in hand, decision index, evening",
     "preference": "the user's number in the split",
-    "next.reward": "whether the user would decide so, or take another dish or place alike",
+    "next.reward": "1 for taking a dish that the user would take now, or one of its rank, and for "
+    "its zone or the sink, else 0",
 }
 
 NOISE = """

@@ -22,8 +22,7 @@ DECIMALS = 6  # as many digits are the same on all machines
 def certificate_of(session: PeopleSession) -> Certificate:
     """How sure the exact reader is of a session, given those of its prompts that are its user's."""
     split = get_people_split(session.split)
-    own = session.prompts[session.evening :][:1] if split.evening else session.prompts
-    posterior = Posterior([prompt.evidence for prompt in own], split.slips)
+    posterior = Posterior([prompt.evidence for prompt in session.own_prompts], split.slips)
     found = certificate(posterior, session.dishes, people_table())
     return Certificate(round(found.destinations, DECIMALS), round(found.ranks, DECIMALS))
 

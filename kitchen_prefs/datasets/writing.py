@@ -15,6 +15,7 @@ from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -34,6 +35,7 @@ from kitchen_prefs.datasets.certificates import certificate_of, write_certificat
 from kitchen_prefs.datasets.columns import (
     FEATURES,
     FPS,
+    PEOPLE_FEATURES,
     ROBOT_TYPE,
     columns_of,
     features_of,
@@ -125,10 +127,12 @@ def write_episodes(name: str, episodes: Iterable[EpisodeFrames], count: int, roo
         write_certificates(certificates, root)
 
 
-def frames_of(demonstration: Demonstration) -> EpisodeFrames:
+def frames_of(
+    demonstration: Demonstration, features: dict[str, dict[str, Any]] = FEATURES
+) -> EpisodeFrames:
     """The frames of a demonstration with their statistics."""
     columns = columns_of(demonstration)
-    stats = compute_episode_stats(with_statistics(columns), FEATURES)
+    stats = compute_episode_stats(with_statistics(columns), features)
     return EpisodeFrames(columns, demonstration.task, stats)
 
 
@@ -164,7 +168,10 @@ def _demonstrate(session: tuple[str, int]) -> EpisodeFrames:
     if split not in PEOPLE_SPLITS:
         return frames_of(demonstrate(make_session(split, index)))
     of_people = make_people_session(split, index)
-    return replace(frames_of(demonstrate_people(of_people)), certificate=certificate_of(of_people))
+    return replace(
+        frames_of(demonstrate_people(of_people), PEOPLE_FEATURES),
+        certificate=certificate_of(of_people),
+    )
 
 
 def _bookkeeping(number: int, start: int, frames: int, task_index: int) -> dict[str, np.ndarray]:

@@ -31,7 +31,7 @@ class DishwasherPeople(KitchenEnv):
     All observations are float32. `evening` is the number of the prompt whose user is to be served,
     0 but on `people_evening`, where the prompts are of two users. An **action** is a pose, (7,), as
     in the first tier. The **reward** is 1 for picking a dish that the user would take now or one of
-    its rank, and for a free placement in the zone where the dish belongs now, else 0.
+    its rank, and for a free placement in the zone, or the sink, where the dish belongs now, else 0.
 
     An episode is **terminated** when every dish has arrived and is put away, both racks are in and
     the door is closed. It is **truncated** at twice the expert's number of decisions. The info is

@@ -12,7 +12,7 @@ from kitchen_prefs.people.attributes import DescribedDishes
 from kitchen_prefs.people.expert import PlanExpert, ends_of
 from kitchen_prefs.people.sessions import PeopleSession, people_table
 from kitchen_prefs.people.splits import get_people_split
-from kitchen_prefs.people.zones import IS_IN_RACK, SINK_ZONE, zone_of_place
+from kitchen_prefs.people.zones import SINK_ZONE, zone_of_place
 from kitchen_prefs.simulation.kitchen import FIRST_DISH, IN_RACK, SINK, Kitchen
 
 
@@ -53,7 +53,7 @@ class PeopleSimulator(Simulator):
         kitchen = self.kitchen
         if kitchen.held is not None:
             place = self.expert.where_to_put()
-            if place == SINK or kitchen.refusal(instance):
+            if kitchen.refusal(instance):
                 return False
             return zone_of_place(kitchen, instance) == zone_of_place(kitchen, place)
         wanted = self.expert.choose()
@@ -71,6 +71,7 @@ class PeopleSimulator(Simulator):
         mine, theirs = ends(kitchen), ends(session.expert.trajectory.kitchen)
         by_hand = session.expert.plan.zones == SINK_ZONE
         in_rack = np.isin(kitchen.location, list(IN_RACK.values()))
+        turns = session.expert_turns
         return PeopleEpisode(
             split=session.split,
             session=session.index,
@@ -78,7 +79,7 @@ class PeopleSimulator(Simulator):
             preference=get_people_split(session.split).user(session.index),
             dishes=len(kitchen.location),
             alike=(mine & theirs).total(),
-            turns=(self._right_turns, self._turns),
+            turns=(self._right_turns, max(self._turns, turns) if turns else 0),
             styled=(self._right_style, self._styled),
             by_hand_loaded=int((by_hand & in_rack).sum()),
             decisions=tuple(self.decisions),
@@ -91,7 +92,7 @@ class PeopleSimulator(Simulator):
 
     def _before(self, instance: int) -> _Before:
         if self.kitchen.held is None:
-            return _Before(self._dishes_in_turn(), None)
+            return _Before(self.expert.in_turn(), None)
         place = self.expert.where_to_put()
         return _Before(None, None if place == SINK else place)
 
@@ -106,25 +107,14 @@ class PeopleSimulator(Simulator):
             self._styled += in_its_zone
             self._right_style += instance == before.styled
 
-    def _dishes_in_turn(self) -> frozenset[int] | None:
-        """The dishes of the lowest rank that could be taken for the rack that is out.
-
-        None if no rack is out, the user has no order, or the dishes of one rank wait.
-        """
-        rack = self.kitchen.open_rack
-        if rack is None or self.session.user.order is None:
-            return None
-        waiting = self.kitchen.counter
-        mine = waiting[IS_IN_RACK[rack][self.expert.targets(waiting)]]
-        ranks = self.session.expert.plan.ranks[mine]
-        if len(set(ranks.tolist())) < 2:
-            return None
-        return frozenset(mine[ranks == ranks.min()].tolist())
-
 
 def ends(kitchen: Kitchen) -> Counter[tuple]:
-    """How many dishes of each kind are in each zone, in the sink, or left."""
+    """How many dishes of each kind are in each zone, in the sink, or left.
+
+    Dishes are of a kind if no rule of any user tells them apart.
+    """
     dishes = kitchen.dishes
     assert isinstance(dishes, DescribedDishes)
-    attributes = (dishes.category, dishes.material, dishes.colour, dishes.greasy, ends_of(kitchen))
+    kinds = (dishes.category, dishes.material, dishes.colour, dishes.greasy, dishes.classes("size"))
+    attributes = (*kinds, ends_of(kitchen))
     return Counter(zip(*(values.tolist() for values in attributes), strict=True))

@@ -132,16 +132,16 @@ class Evaluator:
         return self.loaded_policy.fingerprint
 
     def _conditions(self, split: str, prompt_of: str, expert_states: bool) -> EvaluationConditions:
-        policy = self.loaded_policy
+        policy, tier = self.loaded_policy, tier_of(split)
         return EvaluationConditions(
             policy=policy.type,
             fingerprint=self._fingerprint,
             track=policy.track,
             prompt_of=prompt_of,
-            prompts=self.prompts,
+            prompts=tier.prompts(split, self.prompts),
             expert_states=expert_states,
             salt=self.salt,
-            data_version=tier_of(split).data_version,
+            data_version=tier.data_version,
             package_version=version("lerobot_policy_kitchen_prefs"),
             given_prompt=self.given.digest if self.given else None,
         )

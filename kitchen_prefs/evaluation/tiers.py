@@ -100,6 +100,10 @@ class Tier:
         """How many sessions a split has."""
         return self.splits[split].sessions
 
+    def prompts(self, split: str, asked: int) -> int:
+        """How many demonstrations prompt an episode: as asked, or as the split says."""
+        return asked if self.varies else self.splits[split].prompts
+
     def environment(self, split: str, **asked: Any) -> KitchenEnv:
         """An environment of a split.
 

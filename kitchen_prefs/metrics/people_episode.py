@@ -19,7 +19,7 @@ class PeopleEpisode:
         alike: How many of them end as the expert's do: like dishes in one zone, or in the sink,
             taken together.
         turns: How often a dish of the lowest rank was taken, and at how many decisions dishes of
-            several ranks could be.
+            several ranks could be: of the policy, or of the expert if it had more of them.
         styled: How many dishes stand where the user's style puts them, and how many were put into
             their zone.
         by_hand_loaded: The dishes that are washed by hand and stand in a rack.
@@ -56,8 +56,10 @@ def where(episode: PeopleEpisode) -> float:
 def turn(episode: PeopleEpisode) -> float | None:
     """How often one of the lowest rank was taken, where dishes of several ranks could be.
 
+    A policy that lets fewer such decisions happen than the expert has missed the others.
+
     Returns:
-        A share, or None if no decision of the episode counts, as with a user without an order.
+        A share, or None if the expert has no such decision, as with a user without an order.
     """
     return _share(episode.turns)
 

@@ -3,9 +3,12 @@
 import json
 from collections.abc import Mapping
 from functools import cache
-from importlib.resources import files
+from pathlib import Path
 
 import numpy as np
+
+REFERENCES = Path(__file__).with_name("reference_scores.json")
+PEOPLE_REFERENCES = Path(__file__).with_name("people_reference_scores.json")
 
 References = Mapping[str, Mapping[str, float]]  # of each split, the floor and the ceiling
 
@@ -17,7 +20,7 @@ def reference_scores() -> References:
     The floor is the rule `promptless`, which acts by the posterior over all 2 x 7! preferences
     without a prompt; the ceiling is `bayes`, which has the prompt as well.
     """
-    return _read("reference_scores.json")
+    return json.loads(REFERENCES.read_text())
 
 
 @cache
@@ -25,16 +28,13 @@ def people_reference_scores() -> References:
     """H of the floor and of the ceiling on each split of the second tier but that of training.
 
     The floor is the most probable user of the grammar without a prompt; the ceiling is the exact
-    reader of the grammar, which has the prompts as well.
+    reader of the grammar, which has the prompts as well. `kitchen-prefs people ladder --record`
+    measures both.
     """
-    return _read("people_reference_scores.json")
+    return json.loads(PEOPLE_REFERENCES.read_text())
 
 
 def rescaled[Value: (float, np.ndarray)](value: Value, of_split: Mapping[str, float]) -> Value:
     """(value - floor) / (ceiling - floor) of a split, clipped at neither end."""
     floor, ceiling = of_split["floor"], of_split["ceiling"]
     return (value - floor) / (ceiling - floor)
-
-
-def _read(name: str) -> References:
-    return json.loads((files("kitchen_prefs.metrics") / name).read_text())

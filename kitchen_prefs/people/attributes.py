@@ -68,6 +68,10 @@ class DescribedDishes(Dishes):
     greasy: np.ndarray
     scale: np.ndarray
 
+    def digested(self) -> tuple[np.ndarray, ...]:
+        """What a kitchen's digest tells of them beside their poses."""
+        return (*super().digested(), self.material, self.colour, self.greasy, self.scale)
+
     @property
     def extents(self) -> np.ndarray:
         """The full extents of each dish when it stands upright, (n, 3) m."""

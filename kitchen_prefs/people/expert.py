@@ -75,6 +75,22 @@ class PlanExpert:
         targets = targets_now(self.kitchen)[OVERFLOW_INDEX[self.plan.overflow]]  # (7, 5)
         return targets[category, self.plan.zones[dishes]]
 
+    def in_turn(self) -> frozenset[int] | None:
+        """The dishes of the lowest rank that could be taken for the rack that is out.
+
+        None if no rack is out, a dish is in hand, or the dishes that could be taken are of one
+        rank, as all are of a user without an order.
+        """
+        kitchen = self.kitchen
+        if kitchen.open_rack is None or kitchen.held is not None:
+            return None
+        waiting = kitchen.counter
+        mine = waiting[IS_IN_RACK[kitchen.open_rack][self.targets(waiting)]]
+        ranks = self.plan.ranks[mine]
+        if len(set(ranks.tolist())) < 2:
+            return None
+        return frozenset(mine[ranks == ranks.min()].tolist())
+
     def where_to_put(self) -> int:
         """The place for the dish in hand: by style, or the sink."""
         kitchen, dish = self.kitchen, self.kitchen.held

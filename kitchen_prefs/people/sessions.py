@@ -17,8 +17,9 @@ import numpy as np
 
 from kitchen_prefs.people.attributes import DescribedDishes, draw_dishes
 from kitchen_prefs.people.certificates import is_certified
+from kitchen_prefs.people.drawings import Drawing, published_drawings
 from kitchen_prefs.people.evidence import Evidence, evidence_of
-from kitchen_prefs.people.expert import roll_out_plan
+from kitchen_prefs.people.expert import PlanExpert, roll_out_plan
 from kitchen_prefs.people.posterior import Posterior
 from kitchen_prefs.people.splits import (
     COUNTS,
@@ -35,7 +36,7 @@ from kitchen_prefs.simulation.kitchen import Kitchen, PlacementTable, placement_
 from kitchen_prefs.simulation.placements import LARGEST
 from kitchen_prefs.simulation.sessions import check_session
 
-# Sets of prompts that are drawn before the user is drawn anew; one in four is certified.
+# Sets of prompts that are tried before the user is drawn anew; one in four is certified.
 ATTEMPTS = 40
 
 
@@ -89,6 +90,23 @@ class PeopleSession:
         """How the user loads the session's dishes."""
         return UserDemonstration(self.dishes, self.user.plan(self.dishes))
 
+    @cached_property
+    def expert_turns(self) -> int:
+        """At how many decisions the user could take dishes of several ranks."""
+        kitchen = Kitchen(self.dishes, people_table())
+        expert, turns = PlanExpert(kitchen, self.expert.plan), 0
+        for decision in self.expert.trajectory.decisions:
+            turns += expert.in_turn() is not None
+            kitchen.decide(decision)
+        return turns
+
+    @property
+    def own_prompts(self) -> tuple[UserDemonstration, ...]:
+        """The prompts of the user who is to be served: all, or that of whose evening it is."""
+        if get_people_split(self.split).evening:
+            return (self.prompts[self.evening],)
+        return self.prompts
+
     def generator(self, purpose: str) -> np.random.Generator:
         """A fresh generator for one purpose, the same in every process."""
         return _generator(self.split, self.salt, self.index, purpose)
@@ -118,11 +136,28 @@ def make_people_session(split: str, index: int, salt: int = 0) -> PeopleSession:
     check_session(split, where.sessions, index, salt)
     if where.sessions_each > 1:
         return _sessions_of_user(where, where.user(index), salt)[index % where.sessions_each]
+    session = _draw_session(where, index, salt, _drawing(where, index, salt))
+    return _with_somebody_else(session, where) if where.evening else session
+
+
+def search_drawing(split: PeopleSplit, index: int, salt: int) -> Drawing:
+    """The first drawing of a session in which the prompts are certified."""
     for attempt in count():
-        session = _try_session(where, index, salt, attempt)
-        if session is not None:
-            return session
+        for again in range(ATTEMPTS):
+            drawing = Drawing(attempt, again)
+            session = _draw_session(split, index, salt, drawing)
+            if _certified(session.prompts, session.dishes):
+                return drawing
     raise AssertionError("Unreachable: some user is certified.")
+
+
+def _drawing(split: PeopleSplit, index: int, salt: int) -> Drawing:
+    """Which drawing a session is; that of the published sessions is recorded."""
+    if not split.certified:
+        return Drawing(0, 0)
+    if salt == 0:
+        return published_drawings()[split.name][index]
+    return search_drawing(split, index, salt)
 
 
 @lru_cache(maxsize=4096)
@@ -141,22 +176,16 @@ def _sessions_of_user(split: PeopleSplit, number: int, salt: int) -> tuple[Peopl
     )
 
 
-def _try_session(split: PeopleSplit, index: int, salt: int, attempt: int) -> PeopleSession | None:
-    """A session with its prompts; None if no prompts of its user are certified."""
+def _draw_session(split: PeopleSplit, index: int, salt: int, drawing: Drawing) -> PeopleSession:
+    """One drawing of a session's user, dishes and prompts."""
 
     def generator(purpose: str) -> np.random.Generator:
-        return _generator(split.name, salt, index, f"{purpose} {attempt}")
+        return _generator(split.name, salt, index, f"{purpose} {drawing.user}")
 
     user = _draw_user(split, generator("user"))
     dishes = draw_dishes(split.count(index), generator("dishes"))
-    session = PeopleSession(split.name, index, salt, user, dishes, ())
-    for again in range(ATTEMPTS):
-        prompts = _draw_prompts(split, user, generator(f"prompts {again}"))
-        if not split.certified or _certified(prompts, dishes):
-            if split.evening:
-                return _with_somebody_else(session, split, prompts, generator("somebody else"))
-            return replace(session, prompts=prompts)
-    return None
+    prompts = _draw_prompts(split, user, generator(f"prompts {drawing.prompts}"))
+    return PeopleSession(split.name, index, salt, user, dishes, prompts)
 
 
 def _draw_prompts(
@@ -171,16 +200,13 @@ def _draw_prompts(
     return tuple(prompts)
 
 
-def _with_somebody_else(
-    session: PeopleSession,
-    split: PeopleSplit,
-    prompts: tuple[UserDemonstration, ...],
-    generator: np.random.Generator,
-) -> PeopleSession:
+def _with_somebody_else(session: PeopleSession, split: PeopleSplit) -> PeopleSession:
     """The session with another user's demonstration before or after the prompt."""
+    generator = session.generator("somebody else")
     other = _draw_prompts(split, _draw_user(split, generator), generator)
     evening = int(generator.integers(2))
-    return replace(session, prompts=(*other, *prompts)[:: 1 if evening else -1], evening=evening)
+    prompts = (*other, *session.prompts)[:: 1 if evening else -1]
+    return replace(session, prompts=prompts, evening=evening)
 
 
 def _draw_user(split: PeopleSplit, generator: np.random.Generator) -> User:

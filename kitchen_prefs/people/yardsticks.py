@@ -18,6 +18,7 @@ from kitchen_prefs.people.attributes import CLASSES, DescribedDishes
 from kitchen_prefs.people.evidence import Evidence, joined_dishes
 from kitchen_prefs.people.expert import ends_of
 from kitchen_prefs.people.posterior import Posterior
+from kitchen_prefs.people.splits import SLIPS
 from kitchen_prefs.people.users import LoadingPlan
 from kitchen_prefs.people.zones import RACK_OF_ZONE, SINK_ZONE
 from kitchen_prefs.preferences import CATEGORIES, RACKS
@@ -39,7 +40,7 @@ class Shown:
         times: When each was picked in its demonstration, from 0 to 1, (n,) float.
         first: The rack that was loaded first, most often.
         evidence: What each demonstration says to who knows the grammar.
-        slips: The share of dishes that users of the split put elsewhere by mistake.
+        slips: The share of dishes that the user puts elsewhere by mistake, as far as is seen.
     """
 
     dishes: DescribedDishes
@@ -53,8 +54,12 @@ class Shown:
 Yardstick = Callable[[Shown, DescribedDishes], LoadingPlan]
 
 
-def shown_in(loads: Sequence[tuple[Kitchen, Sequence[int], Evidence]], slips: float = 0.0) -> Shown:
-    """What readers see of demonstrations: finished kitchens, their decisions and their evidence."""
+def shown_in(loads: Sequence[tuple[Kitchen, Sequence[int], Evidence]]) -> Shown:
+    """What readers see of demonstrations: finished kitchens, their decisions and their evidence.
+
+    A user whom no rules explain is taken to slip as often as inconsistent users do: nothing tells
+    readers which split they are in.
+    """
     zones, times, firsts = [], [], []
     for kitchen, decisions, _ in loads:
         zones.append(np.minimum(ends_of(kitchen), SINK_ZONE))
@@ -69,7 +74,7 @@ def shown_in(loads: Sequence[tuple[Kitchen, Sequence[int], Evidence]], slips: fl
         np.concatenate(times),
         Counter(firsts).most_common(1)[0][0],
         tuple(evidence for *_, evidence in loads),
-        slips,
+        0.0 if Posterior([evidence for *_, evidence in loads]).is_possible else SLIPS,
     )
 
 

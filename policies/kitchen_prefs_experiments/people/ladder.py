@@ -12,11 +12,12 @@ from kitchen_prefs.metrics.people_episode import PeopleEpisode
 from kitchen_prefs.metrics.people_intervals import HEADLINE, summarise_people
 from kitchen_prefs.people.expert import PlanExpert
 from kitchen_prefs.people.sessions import PeopleSession, make_people_session
-from kitchen_prefs.people.splits import PEOPLE_TEST_SPLITS, get_people_split
+from kitchen_prefs.people.splits import PEOPLE_SPLITS, get_people_split
 from kitchen_prefs.people.users import LoadingPlan
 from kitchen_prefs.people.yardsticks import YARDSTICKS, Shown, shown_in
 from kitchen_prefs_experiments.markdown import interval_cell, markdown_table
 
+EVALUATED = tuple(PEOPLE_SPLITS)[1:]
 EXPERT = "expert"
 FLOOR, CEILING = "promptless", "bayes"
 COLUMNS = (HEADLINE, "Where", "Turn", "Style", "Care")
@@ -25,10 +26,8 @@ NO_ACTION = (0.0,) * 7  # the yardsticks choose instances; no metric reads the a
 Ladder = dict[str, dict[str, dict[str, Interval]]]  # split, yardstick, metric
 
 
-def climb(
-    sessions: int | None = None, salt: int = 0, splits: Sequence[str] = PEOPLE_TEST_SPLITS
-) -> Ladder:
-    """Let every yardstick load the sessions of every test split, on all cores.
+def climb(sessions: int | None = None, salt: int = 0, splits: Sequence[str] = EVALUATED) -> Ladder:
+    """Let every yardstick load the sessions of every split but that of training, on all cores.
 
     Args:
         sessions: The first so many of each split; None for all.
@@ -65,12 +64,12 @@ def plans_for(session: PeopleSession) -> Iterator[tuple[str, LoadingPlan]]:
 
 def what_is_shown(session: PeopleSession) -> Shown:
     """What readers see of the user whose evening it is."""
-    split = get_people_split(session.split)
-    own = session.prompts
-    if split.evening:
-        own = (session.prompts[session.evening],)
-    loads = [(one.trajectory.kitchen, one.trajectory.decisions, one.evidence) for one in own]
-    return shown_in(loads, split.slips)
+    return shown_in(
+        [
+            (one.trajectory.kitchen, one.trajectory.decisions, one.evidence)
+            for one in session.own_prompts
+        ]
+    )
 
 
 def load(session: PeopleSession, plan: LoadingPlan) -> PeopleEpisode:
@@ -80,6 +79,17 @@ def load(session: PeopleSession, plan: LoadingPlan) -> PeopleEpisode:
     while not (simulator.terminated or simulator.truncated):
         simulator.decide(expert.choose(), NO_ACTION)
     return simulator.episode()
+
+
+def references_of(ladder: Ladder) -> dict[str, dict[str, float]]:
+    """The floor and the ceiling of each split, between which H is rescaled."""
+    return {
+        split: {
+            "floor": round(of_split[FLOOR][HEADLINE].mean, 4),
+            "ceiling": round(of_split[CEILING][HEADLINE].mean, 4),
+        }
+        for split, of_split in ladder.items()
+    }
 
 
 def rescaled(of_split: dict[str, dict[str, Interval]], name: str) -> float:

@@ -6,9 +6,8 @@ import numpy as np
 
 from kitchen_prefs import instances
 from kitchen_prefs.people.evidence import Evidence, evidence_of
-from kitchen_prefs.people.posterior import Posterior
 from kitchen_prefs.people.sessions import people_table
-from kitchen_prefs.people.splits import PROMPTS_OF_TWO_USERS, SLIPS
+from kitchen_prefs.people.splits import PROMPTS_OF_TWO_USERS
 from kitchen_prefs.people.yardsticks import Shown, shown_in
 from kitchen_prefs.simulation.kitchen import Kitchen
 from lerobot_policy_kitchen_prefs.rules.observed_dishes import counter_rows, dishes_of
@@ -21,9 +20,6 @@ Decision = tuple[np.ndarray, int]  # an instance set, (n, 21), and its chosen ro
 def what_is_shown(prompt: np.ndarray, evening: int) -> Shown:
     """Read a user's demonstrations.
 
-    A user whom no rules explain is taken to slip as often as inconsistent users do: an observation
-    does not tell.
-
     Args:
         prompt: The demonstrations, one below the other, (R, 22), padded.
         evening: Which of them is of the user, if they are of two.
@@ -31,9 +27,7 @@ def what_is_shown(prompt: np.ndarray, evening: int) -> Shown:
     shown = list(demonstrations_of(prompt))
     if len(shown) == PROMPTS_OF_TWO_USERS:
         shown = [shown[evening]]
-    loads = [read_demonstration(one) for one in shown]
-    explained = Posterior([evidence for *_, evidence in loads]).is_possible
-    return shown_in(loads, slips=0.0 if explained else SLIPS)
+    return shown_in([read_demonstration(one) for one in shown])
 
 
 def demonstrations_of(prompt: np.ndarray) -> Iterator[list[Decision]]:

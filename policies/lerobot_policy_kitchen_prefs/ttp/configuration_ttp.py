@@ -220,6 +220,10 @@ class TTPConfig(PreTrainedConfig):
             ValueError: If a feature is missing or has another shape.
         """
         check_sets_and_poses(self)
+        if self.type == "ttp" and self.described and self.relabel:
+            raise ValueError(
+                "relabel permutes the categories of the first tier; set it to false for the second."
+            )
 
     @property
     def observation_delta_indices(self) -> list[int] | None:

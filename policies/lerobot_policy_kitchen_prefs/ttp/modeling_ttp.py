@@ -55,7 +55,7 @@ class TTPPolicy(PreTrainedPolicy):
         super().__init__(config)
         config.validate_features()
         self.config: TTPConfig = config
-        self.network = (CompactNetwork if config.departs_from_paper else TTPNetwork)(config)
+        self.network = self._make_network()
         self.recognition = Denoiser() if config.recognise else None  # named so in checkpoints
         self.demonstrations: DemonstrationStore | None = None
         if dataset_meta is not None:
@@ -69,6 +69,9 @@ class TTPPolicy(PreTrainedPolicy):
             if self.recognition:
                 self.recognition.fit(self.demonstrations)
         self.reset()
+
+    def _make_network(self) -> TTPNetwork:
+        return (CompactNetwork if self.config.departs_from_paper else TTPNetwork)(self.config)
 
     @classmethod
     def from_pretrained(cls, pretrained_name_or_path: str | Path, **options: Any) -> "TTPPolicy":

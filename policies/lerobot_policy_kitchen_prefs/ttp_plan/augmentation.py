@@ -1,8 +1,9 @@
 """Augmentation of a batch: other names for colours, materials and zones, slips, other selections.
 
 A permutation of the colours, applied to a user's demonstrations together, makes another user of the
-same task; so does one of the materials, and a mirror image of the zones. None changes which kinds
-of rules a user has, so no pair of rules arises that training lacks (`people_composed`).
+same task; a permutation of the materials one of a like task, in which glasses may be of wood; a
+mirror image of the zones one who turns racks round. None changes which kinds of rules a user has,
+so no pair of rules arises that training lacks (`people_composed`).
 """
 
 import numpy as np
@@ -48,19 +49,26 @@ class Augmentation:
         count: The number B of samples.
         config: The configuration.
         generator: Source of randomness; without it nothing is changed.
+        device: Where the samples are.
 
     Attributes:
         names: What each zone, and the sink, is called in a sample, (B, 5) int64.
     """
 
     def __init__(
-        self, count: int, config: PlanTTPConfig, generator: np.random.Generator | None
+        self,
+        count: int,
+        config: PlanTTPConfig,
+        generator: np.random.Generator | None,
+        device: torch.device,
     ) -> None:
         self._generator = generator if config.relabel else None
         self._config = config
-        self.names = torch.arange(DESTINATIONS).expand(count, -1)
+        self._device = device
+        self.names = torch.arange(DESTINATIONS, device=device).expand(count, -1)
         if self._generator is not None:
-            self.names = NAMES[torch.from_numpy(self._generator.integers(len(NAMES), size=count))]
+            names = torch.from_numpy(self._generator.integers(len(NAMES), size=count))
+            self.names = NAMES[names].to(device)
             self._colours = self._permutations(count, len(COLOURS))
             self._materials = self._permutations(count, len(MATERIALS))
 
@@ -74,17 +82,19 @@ class Augmentation:
         return dishes._replace(attributes=attributes)
 
     def of_prompts(self, dishes: PlacedDishes) -> PlacedDishes:
-        """Put some dishes of some demonstrations into other zones, and forget some of others."""
+        """Put some dishes of some demonstrations into other zones, and forget some of others.
+
+        A slip is to the other side of the rack, as the other rack was in at that time.
+        """
         if self._generator is None:
             return dishes
         shape = tuple(dishes.zones.shape)
         slipped = self._drawn((shape[0], 1), self._config.slip_share) & self._drawn(shape, SLIPS)
-        anywhere = torch.from_numpy(self._generator.integers(ZONES, size=shape))
+        slipped &= dishes.zones < ZONES
         share = self._generator.uniform(0, FORGOTTEN, (shape[0], 1))
         forgotten = self._drawn((shape[0], 1), 0.5) & self._drawn(shape, share)
-        return dishes._replace(
-            zones=anywhere.where(slipped, dishes.zones), mask=dishes.mask & ~forgotten
-        )
+        zones = (dishes.zones ^ 1).where(slipped, dishes.zones)
+        return dishes._replace(zones=zones).only(~forgotten)
 
     def split(self, own: PlacedDishes) -> tuple[PlacedDishes, PlacedDishes]:
         """Of the samples' own dishes those that are shown too, and those that are asked about.
@@ -99,7 +109,7 @@ class Augmentation:
         shown[: self._config.decided] = False
         second = torch.ones_like(own.demonstration)
         return (
-            own._replace(mask=own.mask & shown, demonstration=second),
+            own.only(shown)._replace(demonstration=second),
             own._replace(mask=own.mask & ~shown),
         )
 
@@ -107,7 +117,7 @@ class Augmentation:
         """Permute the colours and the materials in these columns of rows (B, N, D)."""
         if self._generator is None:
             return rows
-        known = torch.from_numpy(COLOURS)  # (4, 3)
+        known = torch.from_numpy(COLOURS).to(rows.device)  # (4, 3)
         colour = torch.cdist(rows[..., rgb], known.expand(len(rows), -1, -1)).argmin(-1)  # (B, N)
         described = (rows[..., rgb] > 0).any(dim=-1, keepdim=True)  # (B, N, 1)
         changed = rows.clone()
@@ -118,10 +128,10 @@ class Augmentation:
 
     def _drawn(self, shape: tuple[int, ...], probability: float | np.ndarray) -> Tensor:
         assert self._generator is not None
-        return torch.from_numpy(self._generator.random(shape) < probability)
+        return torch.from_numpy(self._generator.random(shape) < probability).to(self._device)
 
     def _permutations(self, count: int, size: int) -> Tensor:
         """A permutation of `size` things for each sample, (B, size) int64."""
         assert self._generator is not None
         identity = np.tile(np.arange(size), (count, 1))
-        return torch.from_numpy(self._generator.permuted(identity, axis=1))
+        return torch.from_numpy(self._generator.permuted(identity, axis=1)).to(self._device)

@@ -12,7 +12,8 @@ from ..ttp.configuration_ttp import COMPACT, TTPConfig
 class PlanTTPConfig(TTPConfig):
     """Configuration of TTP with a plan: the compact network of TTP, and a plan reader before it.
 
-    Of TTP's switches, `clashes`, `failures` and `pointer="outputs"` are always on.
+    Of TTP's switches, `clashes`, `failures` and `pointer="outputs"` are always on, and `recognise`,
+    `context_history` and further `rounds` off.
 
     Attributes:
         reader_dim: Size of a dish's features in the plan reader.
@@ -51,3 +52,28 @@ class PlanTTPConfig(TTPConfig):
     dim_marker: int = COMPACT["dim_marker"]
     dim_feedforward: int = COMPACT["dim_feedforward"]
     n_heads: int = COMPACT["n_heads"]
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        fixed = {
+            **{"clashes": True, "failures": True, "pointer": "outputs"},
+            **{"recognise": False, "context_history": 0, "rounds": 1},
+        }
+        for name, value in fixed.items():
+            if getattr(self, name) != value:
+                raise ValueError(
+                    f"{name} is always {value} for --policy.type=ttp_plan; leave it out."
+                )
+
+    def validate_features(self) -> None:
+        """Check that the inputs contain sets of described dishes and the outputs poses.
+
+        Raises:
+            ValueError: If a feature is missing or has another shape.
+        """
+        super().validate_features()
+        if not self.described:
+            raise ValueError(
+                "--policy.type=ttp_plan reads colours and materials, which the first tier lacks; "
+                "use a data set or a split of the second, such as dishwasher-people_train-v2."
+            )

@@ -16,12 +16,12 @@ from kitchen_prefs.envs.observations import EXTENTS as CATEGORY_EXTENTS
 from kitchen_prefs.instances import DECISION, EXTENTS, IS_PLACE, MATERIAL, POSITION, RGB, SOIL
 from kitchen_prefs.simulation.layout import SINK_CENTRE
 
+from ..common.categories import category_at_any_size
 from ..common.dish_locations import ELSEWHERE, ZONES, in_rack, on_counter, zone_of
 from ..common.instance_sets import is_dish, select_rows
 
-CATEGORIES = len(CATEGORY_EXTENTS)
-# Dishes of a category differ in size, not in shape.
-SHAPES = F.normalize(torch.from_numpy(CATEGORY_EXTENTS), dim=-1)  # (7, 3)
+EXTENTS_OF = torch.from_numpy(CATEGORY_EXTENTS)  # (7, 3)
+CATEGORIES = len(EXTENTS_OF)
 
 # The columns of attributes.
 CATEGORY_PART, MATERIAL_PART = slice(0, 7), slice(7, 11)
@@ -72,6 +72,12 @@ class PlacedDishes(NamedTuple):
         """The dishes with those of another demonstration of each user."""
         parts = (torch.cat(pair, dim=1) for pair in zip(self, others, strict=True))
         return type(self)(*parts)
+
+    def only(self, shown: Tensor) -> Self:
+        """The same demonstrations as if there were no other dishes than some, (G, n) bool."""
+        mask = self.mask & shown
+        stands = _stands(self.attributes, self.zones) * mask[..., None, None]  # (G, n, 4, 7)
+        return self._replace(mask=mask, contents=stands.cumsum(dim=1) - stands)
 
     def contents_at(self, decision: Tensor) -> Tensor:
         """What stands in the zones before a decision of each demonstration, (G,): (G, 4, 7)."""
@@ -146,16 +152,14 @@ def attributes_of(rows: Tensor) -> Tensor:
 
     Category and material as one of several, the colour's RGB, soil, and the logarithms of extents.
     """
-    extents = rows[..., EXTENTS]
-    shapes = F.normalize(extents, dim=-1)
-    category = (shapes @ SHAPES.to(rows).T).argmax(dim=-1)  # (...)
+    category, _ = category_at_any_size(rows, EXTENTS_OF.to(rows))  # (...)
     return torch.cat(
         [
             F.one_hot(category, CATEGORIES).to(rows.dtype),
             rows[..., MATERIAL],
             rows[..., RGB],
             rows[..., SOIL, None],
-            (extents.clamp(min=1e-3) / USUAL_LENGTH).log(),
+            (rows[..., EXTENTS].clamp(min=1e-3) / USUAL_LENGTH).log(),
         ],
         dim=-1,
     )

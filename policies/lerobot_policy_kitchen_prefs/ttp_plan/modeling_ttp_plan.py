@@ -24,7 +24,7 @@ from .configuration_ttp_plan import PlanTTPConfig
 from .dish_tokens import PlacedDishes, placed_dishes, read_placed
 from .network import PlanNetwork, PlanSituations, Preferences
 from .plan_reader import DESTINATIONS
-from .rack_state import RackMemory
+from .rack_state import ContentsMemory
 
 
 class PlanTTPPolicy(TTPPolicy):
@@ -40,10 +40,12 @@ class PlanTTPPolicy(TTPPolicy):
     ) -> None:
         """Make the network, and read the demonstrations; arguments are those of `TTPPolicy`."""
         super().__init__(config, dataset_meta)
-        self.network = PlanNetwork(config)
         if dataset_meta is not None:
             whole = DemonstrationStore.read(dataset_meta, chosen_only=False)
             self._placed = read_placed(whole)
+
+    def _make_network(self) -> PlanNetwork:
+        return PlanNetwork(self.config)
 
     # Training --------------------------------------------------------------------------------
 
@@ -55,8 +57,8 @@ class PlanTTPPolicy(TTPPolicy):
 
         Returns:
             The sum of the cross-entropies of the expert's choices, of the destinations of all
-            dishes of the frames' episodes, and of which of two dishes of one
-            rack is picked first; and the shares of each that are right.
+            dishes of the frames' episodes, and of which of two dishes of one rack is picked first;
+            and the shares of each that are right.
 
         Raises:
             ValueError: If the policy was made without a data set, or an action is no row's pose.
@@ -66,9 +68,11 @@ class PlanTTPPolicy(TTPPolicy):
         sets = as_rows(batch[OBS_INSTANCES])  # (B, N, 21)
         targets = chosen_rows(sets, batch[ACTION])  # (B,)
         others = self._others(episodes, generator)
-        augmentation = Augmentation(len(sets), self.config, generator if self.training else None)
+        augmentation = Augmentation(
+            len(sets), self.config, generator if self.training else None, sets.device
+        )
         sets = augmentation.of_rows(sets)
-        own = augmentation.of_dishes(self._placed.select(torch.from_numpy(episodes)))
+        own = augmentation.of_dishes(self._placed_by(episodes, sets.device))
         contents = own.contents_at(sets[..., DECISION].amax(dim=1))  # (B, 4, 7)
         failed = torch.zeros(sets.shape[:2], dtype=torch.bool, device=sets.device)
         if self.training:
@@ -91,22 +95,35 @@ class PlanTTPPolicy(TTPPolicy):
                 "TTP draws its prompts from the training data set; make it with "
                 "dataset_meta=dataset.meta, as lerobot-train does."
             )
-        drawn = [store.draw(store.preference[e], np.array([e]), generator) for e in episodes]
-        return np.array(drawn)
+        drawn = np.array(
+            [store.draw(store.preference[e], np.array([e]), generator) for e in episodes]
+        )
+        if (drawn == episodes).any():
+            raise ValueError(
+                f"Episode {episodes[drawn == episodes][0]} is the only one of its user, so none "
+                "can prompt it; train on people_train, whose users have two each."
+            )
+        return drawn
 
     def _preference_of(
         self, episodes: np.ndarray, own: PlacedDishes, augmentation: Augmentation
     ) -> Preferences:
         """Read episodes, and dishes that are shown beside them."""
         assert self.demonstrations is not None
-        prompts = torch.from_numpy(self.demonstrations.prompts(list(episodes)))  # (B, P, 22)
-        prompts = augmentation.of_rows(prompts)
-        dishes = augmentation.of_dishes(self._placed.select(torch.from_numpy(episodes)))
+        device = own.mask.device
+        prompts = torch.from_numpy(self.demonstrations.prompts(list(episodes))).to(device)
+        prompts = augmentation.of_rows(prompts)  # (B, P, 22)
+        dishes = augmentation.of_dishes(self._placed_by(episodes, device))
         dishes = augmentation.of_prompts(dishes).with_others(own)
         return Preferences(
             self.network.reader.encode(dishes, augmentation.names),
             self.network.encode(*tokens_of_prompts(prompts, self.config.prompt_tokens)),
         )
+
+    def _placed_by(self, episodes: np.ndarray, device: torch.device) -> PlacedDishes:
+        """What episodes do with their dishes."""
+        placed = self._placed.select(torch.from_numpy(episodes))
+        return PlacedDishes(*(part.to(device) for part in placed))
 
     def _loss_of_decisions(
         self, situations: PlanSituations, targets: Tensor, preference: Preferences
@@ -130,10 +147,11 @@ class PlanTTPPolicy(TTPPolicy):
         zones = asked.zones[asked.mask]
         turns = reader.turns(plans, asked.distances)  # (B, n)
         in_order = (turns[:, None] - turns[:, :, None])[asked.preferred()]
-        loss = F.cross_entropy(scores, zones) + F.softplus(-in_order).mean()
+        of_order = F.softplus(-in_order).sum() / max(len(in_order), 1)
+        loss = F.cross_entropy(scores, zones) + of_order
         return loss, {
             "zone_accuracy": (scores.argmax(dim=1) == zones).float().mean().item(),
-            "order_accuracy": (in_order > 0).float().mean().item(),
+            "order_accuracy": (in_order > 0).sum().item() / max(len(in_order), 1),
         }
 
     # Acting ----------------------------------------------------------------------------------
@@ -141,7 +159,7 @@ class PlanTTPPolicy(TTPPolicy):
     def reset(self) -> None:
         """Forget prompts, racks and failed choices: new episodes begin."""
         self._preferences: Preferences | None = None
-        self._racks = RackMemory()
+        self._racks = ContentsMemory()
         self._failed_choices = FailedChoices()
 
     @torch.no_grad()

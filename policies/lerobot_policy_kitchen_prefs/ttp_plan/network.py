@@ -122,6 +122,8 @@ class PlanNetwork(CompactNetwork):
         is_place = is_place_decision(sets)[:, None]  # (B, 1)
         dishes = (sets[..., IS_PLACE] > 0).where(is_place, is_dish(sets) & on_counter(sets))
         index, mask = selected_indices(_one_place(sets, dishes))  # (B, M) each
+        if index.shape[1] == 0:  # no dish waits in any of the situations
+            return sets.new_zeros(*sets.shape[:2], TOLD)
         waiting = gather_rows(sets, index)  # (B, M, 21)
         attributes = attributes_of(waiting)  # (B, M, 18)
         plans = self.reader.plan(attributes, preference.prompts, prompt_of)  # (B, M, d)

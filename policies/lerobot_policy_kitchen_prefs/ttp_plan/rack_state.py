@@ -19,7 +19,7 @@ def open_racks(sets: Tensor) -> Tensor:
     return (apart < NEAR).any(dim=1)
 
 
-class RackMemory:
+class ContentsMemory:
     """What stands in the racks in each of B episodes; a rack that is in hides it."""
 
     def __init__(self) -> None:

@@ -1,5 +1,8 @@
 """The environment of the second tier: what it shows, and what the expert's actions come to."""
 
+from collections import Counter
+from dataclasses import replace
+
 import gymnasium
 import numpy as np
 import pytest
@@ -8,10 +11,14 @@ from gymnasium.utils.env_checker import check_env
 import kitchen_prefs  # noqa: F401  (registers the environment)
 from kitchen_prefs import instances
 from kitchen_prefs.envs.people_demonstrations import demonstrate_people
-from kitchen_prefs.metrics.people_episode import PEOPLE_METRICS, care, headline, where
+from kitchen_prefs.envs.people_simulator import PeopleSimulator, ends
+from kitchen_prefs.metrics.people_episode import PEOPLE_METRICS, care, headline, turn, where
 from kitchen_prefs.people.attributes import RGB
+from kitchen_prefs.people.sessions import make_people_session, people_table
 from kitchen_prefs.people.splits import PEOPLE_SPLITS
+from kitchen_prefs.simulation.kitchen import DOOR, FIRST_DISH, SINK, Kitchen
 
+NO = (0.0,) * 7  # no metric reads the action
 ID = "kitchen_prefs/DishwasherPeople-v0"
 
 
@@ -138,3 +145,33 @@ def test_it_says_whose_evening_it_is():
 def test_flat_sets_have_the_rows_one_after_the_other():
     flat, rows = (made("people_partial", flat=one).reset(seed=0)[0] for one in (True, False))
     assert np.array_equal(flat["instances"].reshape(rows["instances"].shape), rows["instances"])
+
+
+def test_who_sinks_every_dish_has_missed_every_turn():
+    session = next(
+        one
+        for one in (make_people_session("people_train", index) for index in range(50))
+        if one.expert_turns
+    )
+    simulator = PeopleSimulator(session)
+    kitchen = simulator.kitchen
+    while not (simulator.terminated or simulator.truncated):
+        waiting = kitchen.counter
+        nothing_to_pick = SINK if kitchen.held is not None else DOOR
+        picked = kitchen.held is None and len(waiting)
+        simulator.decide(FIRST_DISH + int(waiting[0]) if picked else nothing_to_pick, NO)
+    assert turn(simulator.episode()) == 0
+
+
+def test_dishes_that_a_rule_on_size_tells_apart_are_not_alike():
+    session = make_people_session("people_train", 0)
+    sizes = Counter(session.dishes.classes("size").tolist())
+    kinds = ends(session.expert.trajectory.kitchen)
+    assert Counter(kind[4] for kind in kinds.elements()) == sizes
+
+
+def test_the_digest_tells_of_materials_and_colours():
+    session = make_people_session("people_train", 0)
+    other = replace(session.dishes, colour=session.dishes.colour[::-1].copy())
+    one, two = (Kitchen(dishes, people_table()).digest() for dishes in (session.dishes, other))
+    assert one != two

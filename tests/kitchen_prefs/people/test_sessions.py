@@ -26,8 +26,7 @@ def test_a_session_is_what_its_split_says(name):
             kinds = len(np.unique(prompt.dishes.category))
             assert kinds == len(CATEGORIES) - split.lacking
         if split.certified:
-            own = session.prompts[session.evening :][:1] if split.evening else session.prompts
-            evidence = [prompt.evidence for prompt in own]
+            evidence = [prompt.evidence for prompt in session.own_prompts]
             assert certificate(Posterior(evidence), session.dishes, people_table()).holds
 
 

@@ -14,7 +14,7 @@ from lerobot_policy_kitchen_prefs.ttp_plan.dish_tokens import (
     CATEGORY_PART,
     placed_dishes,
 )
-from lerobot_policy_kitchen_prefs.ttp_plan.rack_state import RackMemory, open_racks
+from lerobot_policy_kitchen_prefs.ttp_plan.rack_state import ContentsMemory, open_racks
 
 ZONES = 4
 
@@ -49,7 +49,7 @@ def test_contents_are_what_stood_in_the_zones(shown):
 def test_what_a_closed_rack_hides_is_remembered():
     environment = DishwasherPeople("people_train")
     observation, _ = environment.reset(options={"session": 3})
-    memory, ended = RackMemory(), False
+    memory, ended = ContentsMemory(), False
     while not ended:
         sets = torch.from_numpy(observation["instances"])[None]
         kitchen = environment.simulator.kitchen

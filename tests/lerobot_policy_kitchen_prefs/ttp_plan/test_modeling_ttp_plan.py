@@ -1,13 +1,25 @@
 """TTP with a plan through LeRobot's public entries: training, acting, checkpoints."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import torch
+from lerobot.configs import FeatureType, PolicyFeature
 
 from kitchen_prefs.envs.people_environment import DishwasherPeople
-from kitchen_prefs.instances import PEOPLE_PROMPT_CAPACITY, POSE, choosable, is_real
-from lerobot_policy_kitchen_prefs.ttp_plan import PlanTTPPolicy
+from kitchen_prefs.instances import (
+    CAPACITY,
+    COLUMNS,
+    PEOPLE_PROMPT_CAPACITY,
+    POSE,
+    choosable,
+    is_real,
+)
+from lerobot_policy_kitchen_prefs.ttp_plan import PlanTTPConfig, PlanTTPPolicy
+from lerobot_policy_kitchen_prefs.ttp_plan.augmentation import Augmentation
 
+RNG, CPU = np.random.default_rng(0), torch.device("cpu")
 KEYS = ("observation.instances", "action", "episode_index", "index")
 
 
@@ -25,6 +37,10 @@ def observed(sessions, split="people_train", decisions=0):
         for _ in range(decisions):
             observation, *_ = environment.step(environment.simulator.expert_action())
         shown.append(observation)
+    return batch_of(shown)
+
+
+def batch_of(shown):
     names = {"instances": "instances", "prompt": "prompt", "agent_pos": "state"}
     return {
         f"observation.{name}": torch.from_numpy(np.stack([one[key] for one in shown]))
@@ -123,3 +139,52 @@ def test_a_checkpoint_acts_as_the_policy_did(make_policy, tmp_path):
 def test_without_a_data_set_it_says_that_it_cannot_train(people_dataset, make_policy):
     with pytest.raises(ValueError, match="prompts from the training data set"):
         make_policy()(frames(people_dataset, range(2)))
+
+
+def test_an_episode_that_alone_has_its_user_cannot_be_prompted(people_dataset, make_policy):
+    policy = make_policy(people_dataset)
+    policy.demonstrations.preference = np.arange(4)
+    with pytest.raises(ValueError, match="only one of its user"):
+        policy(frames(people_dataset, range(2)))
+
+
+@pytest.mark.parametrize("count", [1, 3])
+def test_it_acts_to_the_end_of_every_episode(make_policy, count):
+    policy = make_policy()
+    environments = [DishwasherPeople("people_train") for _ in range(count)]
+    shown = [one.reset(options={"session": i})[0] for i, one in enumerate(environments)]
+    while not all(one.simulator.terminated for one in environments):
+        policy.select_action(batch_of(shown))
+        for i, environment in enumerate(environments):
+            if not environment.simulator.terminated:
+                shown[i], *_ = environment.step(environment.simulator.expert_action())
+
+
+@pytest.mark.parametrize(
+    ("settings", "sentence"),
+    [({"clashes": False}, "clashes is always True"), ({"rounds": 2}, "rounds is always 1")],
+)
+def test_what_it_cannot_be_without_is_said(make_policy, settings, sentence):
+    with pytest.raises(ValueError, match=sentence):
+        make_policy(**settings)
+
+
+def test_the_first_tier_is_refused_in_a_sentence():
+    shape = (CAPACITY, COLUMNS)
+    config = PlanTTPConfig(
+        input_features={"observation.instances": PolicyFeature(FeatureType.STATE, shape)},
+        output_features={"action": PolicyFeature(FeatureType.ACTION, (7,))},
+    )
+    with pytest.raises(ValueError, match="reads colours and materials"):
+        config.validate_features()
+
+
+def test_what_is_shown_of_an_own_episode_tells_nothing_of_the_rest(people_dataset, make_policy):
+    policy = make_policy(people_dataset).train()
+    own = policy._placed.select(torch.arange(4))
+    augmentation = Augmentation(4, replace(policy.config, decided=0, own_share=1.0), RNG, CPU)
+    shown, asked = augmentation.split(own)
+    assert shown.mask.any()
+    assert not (shown.mask & asked.mask).any()
+    before = shown.mask.cumsum(dim=1) - shown.mask.int()
+    assert (shown.contents.sum((-1, -2)) <= before).all()
