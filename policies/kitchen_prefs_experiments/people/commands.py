@@ -52,7 +52,8 @@ def show_ladder(
         raise ValueError("--record is of all published sessions; leave out --sessions and --salt.")
     make_folder(out, "--out")
     ladder = climb(sessions, salt)
-    page = ladder_page(ladder)
+    chosen = f"the first {sessions} sessions" if sessions else "all sessions"
+    page = ladder_page(ladder, f"{chosen} with session seed {salt}")
     facts = {
         split: {
             name: {metric: asdict(value.rounded()) for metric, value in metrics.items()}

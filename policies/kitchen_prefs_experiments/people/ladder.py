@@ -12,7 +12,11 @@ from kitchen_prefs.metrics.people_episode import PeopleEpisode
 from kitchen_prefs.metrics.people_intervals import HEADLINE, summarise_people
 from kitchen_prefs.people.expert import PlanExpert
 from kitchen_prefs.people.sessions import PeopleSession, make_people_session
-from kitchen_prefs.people.splits import PEOPLE_SPLITS, get_people_split
+from kitchen_prefs.people.splits import (
+    PEOPLE_DATA_VERSION,
+    PEOPLE_SPLITS,
+    get_people_split,
+)
 from kitchen_prefs.people.users import LoadingPlan
 from kitchen_prefs.people.yardsticks import YARDSTICKS, Shown, shown_in
 from kitchen_prefs_experiments.markdown import interval_cell, markdown_table
@@ -98,9 +102,27 @@ def rescaled(of_split: dict[str, dict[str, Interval]], name: str) -> float:
     return (own - floor) / (ceiling - floor)
 
 
-def ladder_page(ladder: Ladder) -> str:
-    """The ladder in Markdown, a table a split."""
-    parts = []
+HEAD = """# The ladder of the second tier
+
+What simple readers of a user's demonstrations reach, from no prompt to the exact reader of the
+grammar and the user herself, {sessions} of data version {version}. Means, with 95 %
+bootstrap intervals over users; `rescaled` is H between `promptless`, 0, and `bayes`, 1; Care counts
+dishes a session that are washed by hand and were loaded.
+
+```
+uv run kitchen-prefs people ladder --out=docs/results/people
+```
+"""
+
+
+def ladder_page(ladder: Ladder, sessions: str) -> str:
+    """The ladder in Markdown, a table a split.
+
+    Args:
+        ladder: The ladder.
+        sessions: Which sessions it is of, in words.
+    """
+    parts = [HEAD.format(sessions=sessions, version=PEOPLE_DATA_VERSION)]
     for split, of_split in ladder.items():
         rows = [
             [
@@ -111,5 +133,5 @@ def ladder_page(ladder: Ladder) -> str:
             for name, metrics in of_split.items()
         ]
         table = markdown_table(["yardstick", "rescaled", *COLUMNS], rows)
-        parts.append(f"### {split}: {get_people_split(split).purpose}\n\n{table}\n")
+        parts.append(f"## {split}: {get_people_split(split).purpose}\n\n{table}\n")
     return "\n".join(parts)

@@ -1,6 +1,7 @@
 """The ladder of the second tier: readers that know more reach more."""
 
 import json
+from pathlib import Path
 
 import pytest
 from typer.testing import CliRunner
@@ -8,8 +9,11 @@ from typer.testing import CliRunner
 from kitchen_prefs.cli import command_line
 from kitchen_prefs.metrics.people_episode import turn, where
 from kitchen_prefs.metrics.people_intervals import summarise_people
+from kitchen_prefs.metrics.references import people_reference_scores
+from kitchen_prefs.people.splits import PEOPLE_SPLITS
 from kitchen_prefs_experiments.people.ladder import climb, load_all
 
+ROOT = Path(__file__).parents[3]
 SPLIT = "people_three"
 
 
@@ -48,3 +52,15 @@ def test_the_command_writes_the_ladder(tmp_path, monkeypatch):
     facts = json.loads((tmp_path / "ladder.json").read_text())
     assert set(facts["people_partial"]["bayes"]) >= {"H", "Where", "Turn", "Care"}
     assert "| `bayes` | 1.00 |" in (tmp_path / "ladder.md").read_text()
+
+
+def test_floors_and_ceilings_are_those_of_the_published_ladder():
+    published = json.loads((ROOT / "docs/results/people/ladder.json").read_text())
+    assert set(published) == set(people_reference_scores())
+    for split, references in people_reference_scores().items():
+        h = {name: metrics["H"]["mean"] for name, metrics in published[split].items()}
+        assert references["floor"] == pytest.approx(h["promptless"], abs=1e-4)
+        assert references["ceiling"] == pytest.approx(h["bayes"], abs=1e-4)
+        if PEOPLE_SPLITS[split].certified:
+            assert h["category"] < 0.6
+            assert h["bayes"] > 0.95
