@@ -112,5 +112,5 @@ def test_a_submission_and_its_row_name_the_plugin_where_there_is_one(
         write_submission(entry.submission, few_episodes(), folder)
         assert ("plugin" in json.loads((folder / "submission.json").read_text())["policy"]) == named
         assert read_submission(folder).description == entry.submission
-    rows = page_data(rank([of_ours, of_elsewhere], {}))["entries"]
+    rows = page_data({"preferences": rank([of_ours, of_elsewhere], {})})["entries"]
     assert [row["submission"]["policy"]["plugin"] for row in rows] == [None, PLUGIN.model_dump()]

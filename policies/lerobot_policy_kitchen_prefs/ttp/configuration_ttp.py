@@ -14,6 +14,9 @@ from .scheduler import ExponentialDecaySchedulerConfig
 
 # The columns of each attribute.
 ATTRIBUTES = {"pose": POSE, "category": EXTENTS, "time": slice(DECISION, DECISION + 1)}
+# Size of the embedding of colour, material and soil, where dishes have them. No field, as a field
+# would change the fingerprints of all checkpoints of the first tier.
+DIM_DESCRIPTION = 32
 MAX_DECISIONS = 256  # more than the longest episode has, `environment.MAX_EPISODE_STEPS`
 
 
@@ -35,7 +38,6 @@ class TTPConfig(PreTrainedConfig):
         dim_extents: Size of the category embedding.
         dim_time: Size of the time embedding.
         dim_marker: Size of the object-or-place embedding.
-        dim_description: Size of the embedding of colour, material and soil, where dishes have them.
         dim_feedforward: Hidden size of the feed-forward layers.
         n_heads: Attention heads of each layer.
         n_encoder_layers: Layers of the prompt encoder.
@@ -85,7 +87,6 @@ class TTPConfig(PreTrainedConfig):
     dim_extents: int = 64
     dim_time: int = 32
     dim_marker: int = 32
-    dim_description: int = 32
     dim_feedforward: int = 512
     n_heads: int = 2
     n_encoder_layers: int = 2
@@ -192,7 +193,7 @@ class TTPConfig(PreTrainedConfig):
     @property
     def dim(self) -> int:
         """The size d of an instance's embedding."""
-        description = self.dim_description if self.described else 0
+        description = DIM_DESCRIPTION if self.described else 0
         return self.dim_pose + self.dim_extents + self.dim_time + self.dim_marker + description
 
     @property

@@ -31,7 +31,7 @@ from ..common.fourier_features import (
     QUATERNION_RANGE,
     FourierFeatures,
 )
-from .configuration_ttp import MAX_DECISIONS, TTPConfig
+from .configuration_ttp import DIM_DESCRIPTION, MAX_DECISIONS, TTPConfig
 from .encoder_ablations import (
     FourierTimeEncoder,
     LabelCategoryEncoder,
@@ -145,7 +145,7 @@ class InstanceEncoder(nn.Module):
         self.extents = CATEGORY_ENCODERS[config.extents_encoding](config.dim_extents)
         self.pose = POSE_ENCODERS[config.pose_encoding](config.dim_pose)
         self.marker = MarkerEncoder(config.dim_marker)
-        self.description = DescriptionEncoder(config.dim_description) if config.described else None
+        self.description = DescriptionEncoder(DIM_DESCRIPTION) if config.described else None
 
     def forward(self, rows: Tensor) -> Tensor:
         """Embed rows (..., 13), or (..., 21) where dishes are described, as (..., d)."""

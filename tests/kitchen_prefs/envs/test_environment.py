@@ -55,7 +55,7 @@ def test_closed_racks_hide_their_dishes():
     for _, (observation, *_rest) in roll_out_expert(env, start):
         rows, scene = instances.unpad(observation["instances"]), env.scene()
         seen = int(rows[:, instances.IS_OBJECT].sum()) - len(JOINTS)
-        on_counter = sum(position[2] > layout.COUNTER_HEIGHT for _, position, _ in scene.dishes)
+        on_counter = sum(dish.position[2] > layout.COUNTER_HEIGHT for dish in scene.dishes)
         most = max(most, seen - on_counter)
         if not (scene.bottom_out or scene.top_out):
             assert seen == on_counter

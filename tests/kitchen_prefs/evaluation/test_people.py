@@ -14,6 +14,7 @@ from kitchen_prefs.evaluation.episode_files import read_episodes
 from kitchen_prefs.evaluation.evaluator import Evaluator
 from kitchen_prefs.metrics.people_episode import PeopleEpisode
 from kitchen_prefs.metrics.people_intervals import session_headlines, summarise_people
+from kitchen_prefs.metrics.references import people_reference_scores
 
 RANDOM = ("--policy.type=rules", "--policy.rule=random")
 ORDER = ("H", "Rescaled", "Care", "Where", "Turn", "Style", "Refused", "Left open", "TE")
@@ -71,7 +72,9 @@ def test_the_table_begins_with_the_headline_and_what_hurts_a_person(tmp_path):
         *ORDER
     ]
     flat = " ".join(shown.split())
-    assert "Rescaled is 0 at the H 0.250 (the rule people_promptless) and 1 at 0.980" in flat
+    floor, ceiling = people_reference_scores()["people_val"].values()
+    assert f"Rescaled is 0 at the H {floor:.3f} (the rule people_promptless) and 1 at" in flat
+    assert f"1 at {ceiling:.3f}" in flat
 
 
 def test_episodes_are_kept_and_their_summary_is_recomputed_from_them(tmp_path):

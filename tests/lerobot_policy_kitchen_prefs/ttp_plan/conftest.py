@@ -15,7 +15,6 @@ TINY = {
     "dim_extents": 8,
     "dim_time": 4,
     "dim_marker": 4,
-    "dim_description": 8,
     "dim_feedforward": 32,
     "reader_dim": 32,
     "reader_layers": 2,
