@@ -76,6 +76,20 @@ def make_folder(path: Path, option: str) -> None:
         raise OSError(f"{path} cannot be written; give another {option}.") from error
 
 
+def require_empty(path: Path, option: str) -> None:
+    """Make sure that a folder that will be written is not there yet, or is empty.
+
+    Args:
+        path: The folder.
+        option: The option of the command line that named it.
+
+    Raises:
+        ValueError: If it holds something, or is a file.
+    """
+    if path.exists() and (not path.is_dir() or any(path.iterdir())):
+        raise ValueError(f"{path} holds something already; give another {option}.")
+
+
 @contextmanager
 def at_work_alone(path: Path) -> Iterator[None]:
     """Hold a file or folder, so that two commands do not write it at once.

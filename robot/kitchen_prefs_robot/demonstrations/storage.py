@@ -16,7 +16,13 @@ import pyarrow.parquet as pq
 
 from kitchen_prefs import instances
 from kitchen_prefs.datasets.columns import FEATURES, FPS, SETS, flat_numbers
-from kitchen_prefs.utils.files import at_work_alone, atomic_folder, make_folder, write_json
+from kitchen_prefs.utils.files import (
+    at_work_alone,
+    atomic_folder,
+    make_folder,
+    require_empty,
+    write_json,
+)
 from kitchen_prefs_robot.demonstrations.preferences import human_preference
 from kitchen_prefs_robot.demonstrations.recording import HumanDemonstration
 from kitchen_prefs_robot.scene.views import PICTURE_SIZE
@@ -41,8 +47,7 @@ def write_demonstrations(demonstrations: Iterable[HumanDemonstration], root: Pat
         ValueError: If the folder holds something already, or a demonstration is none.
         OSError: If the folder cannot be written.
     """
-    if root.exists() and (not root.is_dir() or any(root.iterdir())):
-        raise ValueError(f"{root} holds something already; give another --out.")
+    require_empty(root, "--out")
     make_folder(root.parent, "--out")
     with at_work_alone(root), atomic_folder(root) as unfinished:
         unfinished.rmdir()  # LeRobot makes it

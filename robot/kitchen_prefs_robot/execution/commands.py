@@ -12,7 +12,7 @@ from rich.console import Console
 from rich.table import Table
 from tqdm import tqdm
 
-from kitchen_prefs.utils.files import at_work_alone, atomic_folder, make_folder
+from kitchen_prefs.utils.files import at_work_alone, atomic_folder, make_folder, require_empty
 from kitchen_prefs.utils.suggestions import suggest
 
 if TYPE_CHECKING:
@@ -27,7 +27,7 @@ CAUSES = ("perception", "grasp", "decision", "drawer")
 def run(
     path: PolicyPath,
     scene: Annotated[int, typer.Option(min=0, help="The seed of the scene.")],
-    out: Annotated[Path, typer.Option(help="The folder of the log and the video.")],
+    out: Annotated[Path, typer.Option(help="The folder of the log and the video, which is made.")],
     demonstration: Annotated[
         str | None,
         typer.Option(
@@ -56,14 +56,15 @@ def run(
     from kitchen_prefs_robot.execution.trials import VARIATIONS, Trial, run_trial
 
     _check_variations([variation])
+    require_empty(out, "--out")
+    make_folder(out.parent, "--out")
     conditions, trial = VARIATIONS[variation], Trial(scene, preference)
+    policy = load_policy(path)  # before the demonstration, which takes longer to record
     prompt = (
         prompt_for(scene, preference, conditions)
         if demonstration is None
         else prompt_from(demonstration, preference)
     )
-    policy = load_policy(path)
-    make_folder(out.parent, "--out")
     with at_work_alone(out), atomic_folder(out) as unfinished:
         log = DecisionLog(unfinished)
         outcome = run_trial(policy, trial, conditions, prompt, log)

@@ -3,7 +3,13 @@ import json
 import numpy as np
 import pytest
 
-from kitchen_prefs.utils.files import at_work_alone, atomic_file, make_folder, write_json
+from kitchen_prefs.utils.files import (
+    at_work_alone,
+    atomic_file,
+    make_folder,
+    require_empty,
+    write_json,
+)
 
 
 def test_what_is_there_stays_until_the_new_file_is_whole(tmp_path):
@@ -38,6 +44,15 @@ def test_a_folder_is_made_with_those_above_it(tmp_path):
     (tmp_path / "file").touch()
     with pytest.raises(OSError, match=r"file cannot be written; give another --cards\."):
         make_folder(tmp_path / "file", "--cards")
+
+
+def test_a_folder_that_holds_something_is_refused(tmp_path):
+    require_empty(tmp_path / "new", "--out")
+    require_empty(tmp_path, "--out")
+    (tmp_path / "file").touch()
+    for there in (tmp_path, tmp_path / "file"):
+        with pytest.raises(ValueError, match=r"holds something already; give another --out\.$"):
+            require_empty(there, "--out")
 
 
 def test_a_second_command_on_one_folder_is_told(tmp_path):

@@ -48,6 +48,28 @@ def test_a_table_resumes_and_refuses_another_policys_outcomes(tmp_path):
     assert said == f"{file} has outcomes of another policy; give another --out."
 
 
+def never(*_):
+    raise AssertionError("nothing is recorded for a command that is refused")
+
+
+def test_a_folder_that_holds_something_is_left_alone(tmp_path, monkeypatch):
+    monkeypatch.setattr("kitchen_prefs_robot.execution.prompts.record", never)
+    (tmp_path / "mine").write_text("mine")
+    said = str(run("run", "--scene=3", f"--out={tmp_path}").exception)
+    assert said == f"{tmp_path} holds something already; give another --out."
+    assert (tmp_path / "mine").read_text() == "mine"
+
+
+def test_a_policy_that_there_is_not_is_noticed_before_a_demonstration_is_recorded(
+    tmp_path, monkeypatch
+):
+    monkeypatch.setattr("kitchen_prefs_robot.execution.prompts.record", never)
+    arguments = ["robot", "run", "--policy.path=nowhere", "--scene=3", f"--out={tmp_path / 'out'}"]
+    said = str(CliRunner().invoke(command_line(), arguments).exception)
+    assert "nowhere" in said
+    assert not (tmp_path / "out").exists()
+
+
 @pytest.mark.parametrize(
     ("arguments", "sentence"),
     [
