@@ -162,7 +162,7 @@ class RobotEpisode:
         return self._drop(decision.drawer)
 
     def _pick(self, dish: TableDish) -> tuple[Result, int | None]:
-        result = self._hand.pick(dish)
+        result = self._hand.pick(dish, self.look)
         if result is Result.DONE:
             self._in_hand = dish.seen.category
             self.look = self.look.without(dish)
@@ -171,7 +171,7 @@ class RobotEpisode:
     def _drop(self, drawer: str) -> tuple[Result, int | None]:
         assert self._in_hand is not None
         held, already = self._hand.held, sum(dish.drawer == drawer for dish in self._placed)
-        result = self._hand.drop(drawer, already)
+        result = self._hand.drop(drawer, already, self.look)
         if result is Result.DONE:
             self._placed.append(placed(self._in_hand, drawer))
         self._in_hand = None

@@ -32,10 +32,10 @@ class Hand(Protocol):
     def move_drawer(self, drawer: str, look: Look) -> Result:
         """Open a drawer that was seen closed, or close it."""
 
-    def pick(self, dish: TableDish) -> Result:
+    def pick(self, dish: TableDish, look: Look) -> Result:
         """Pick a dish where it was seen."""
 
-    def drop(self, drawer: str, already: int) -> Result:
+    def drop(self, drawer: str, already: int, look: Look) -> Result:
         """Drop what is held into an open drawer that holds some dishes already."""
 
 
@@ -61,20 +61,22 @@ class ArmHand:
     def move_drawer(self, drawer: str, look: Look) -> Result:
         """Pull a drawer open by its handle, which is where it was seen, or push it shut."""
         move = close_drawer if look.opened == drawer else open_drawer
-        return move(self._world, drawer, self._on_frame, look.openings[drawer]).result
+        return move(self._world, drawer, look.furniture, self._on_frame).result
 
-    def pick(self, dish: TableDish) -> Result:
+    def pick(self, dish: TableDish, look: Look) -> Result:
         """Grasp a dish and lift it."""
         points = dish.points + self._error()
-        self._picked = pick(self._world, points, dish.others(), self._on_frame)
+        others, known = dish.others(), look.furniture
+        self._picked = pick(self._world, points, others, known, self._on_frame)
         self.held = highest(self._world) if self._picked.succeeded else None
         return self._picked.result
 
-    def drop(self, drawer: str, already: int) -> Result:
+    def drop(self, drawer: str, already: int, look: Look) -> Result:
         """Carry what is held over the open drawer and let go, or put it back if that cannot be."""
         assert self._picked is not None
-        outcome = drop(self._world, drawer, self._picked, already, self._on_frame)
-        if outcome.result is Result.UNREACHABLE:
+        known = look.furniture
+        outcome = drop(self._world, drawer, self._picked, already, known, self._on_frame)
+        if outcome.result in (Result.UNREACHABLE, Result.NOT_OPEN):
             put_back(self._world, self._picked, self._on_frame)
         self.held = None
         return outcome.result
@@ -106,13 +108,13 @@ class InvisibleHand:
         slide_drawer(self._world, drawer, 0.0 if look.opened == drawer else DRAWER_TRAVEL, inside)
         return Result.DONE
 
-    def pick(self, dish: TableDish) -> Result:
+    def pick(self, dish: TableDish, look: Look) -> Result:
         """Take the dish that is nearest to where one was seen."""
         self.held = nearest_on_table(self._world, dish.middle)
         take_in_hand(self._world, self.held)
         return Result.DONE
 
-    def drop(self, drawer: str, already: int) -> Result:
+    def drop(self, drawer: str, already: int, look: Look) -> Result:
         """Drop what is held into its slot of the drawer."""
         assert self.held is not None
         put_into_drawer(self._world, self.held, drawer, already)

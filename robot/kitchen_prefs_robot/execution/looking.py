@@ -10,6 +10,7 @@ from scipy.spatial.transform import Rotation
 from kitchen_prefs.simulation.layout import COUNTER_HEIGHT, EXTENTS
 from kitchen_prefs_robot.execution.conditions import Conditions
 from kitchen_prefs_robot.execution.whereabouts import is_on_table
+from kitchen_prefs_robot.motion.obstacles import Furniture
 from kitchen_prefs_robot.motion.seen_points import exact_points
 from kitchen_prefs_robot.perception.cameras import Cameras, laboratory_poses
 from kitchen_prefs_robot.perception.cloud import Frame
@@ -18,7 +19,6 @@ from kitchen_prefs_robot.perception.known_dishes import known_dishes
 from kitchen_prefs_robot.perception.regions import open_drawer
 from kitchen_prefs_robot.real_to_sim import measure_work_areas, to_drawers_state
 from kitchen_prefs_robot.scene import World
-from kitchen_prefs_robot.scene.layout import DRAWERS
 from kitchen_prefs_robot.scene.views import PICTURE_SIZE
 from kitchen_prefs_robot.task.state import SeenDish
 
@@ -47,6 +47,7 @@ class Look:
     Attributes:
         dishes: On the table; those in drawers are remembered, not seen.
         openings: How far each drawer is open, m.
+        stands_known: Whether it is known where the stands are; the cameras see points of them.
         frames: The cameras' pictures; none where nothing was looked at.
         detections: What perception made of them.
         touching: What it could not tell apart: the robot leaves these dishes alone.
@@ -54,6 +55,7 @@ class Look:
 
     dishes: tuple[TableDish, ...]
     openings: Mapping[str, float]
+    stands_known: bool = False
     frames: Mapping[str, Frame] = field(default_factory=dict)
     detections: Sequence[Detection] = ()
     touching: Sequence[Touching] = ()
@@ -62,6 +64,11 @@ class Look:
     def opened(self) -> str | None:
         """The drawer that is open, or None."""
         return open_drawer(self.openings)
+
+    @property
+    def furniture(self) -> Furniture:
+        """What the arm may know of drawers and stands when it plans."""
+        return Furniture(self.openings, self.stands_known)
 
     def without(self, dish: TableDish) -> Self:
         """The look without the dish that the hand has taken since."""
@@ -119,7 +126,13 @@ class CameraEyes:
             TableDish(seen, dish.box.middle, dish.cloud.points, others_of(dish))
             for seen, dish in zip(state.dishes, found, strict=True)
         )
-        return Look(dishes, sight.openings, frames, sight.dishes, sight.touching)
+        return Look(
+            dishes,
+            sight.openings,
+            frames=frames,
+            detections=sight.dishes,
+            touching=sight.touching,
+        )
 
     def close(self) -> None:
         """Release OpenGL."""
@@ -143,7 +156,7 @@ class TrueEyes:
             for number in range(len(world.scene.dishes))
             if is_on_table(world, number)
         )
-        return Look(dishes, {drawer: world.drawer_opening(drawer) for drawer in DRAWERS})
+        return Look(dishes, Furniture.true(world).openings, stands_known=True)
 
     def close(self) -> None:
         """Do nothing: there is nothing to release."""

@@ -15,10 +15,12 @@ trials       how often single motions succeed
 
 from kitchen_prefs_robot.motion.drawers import close_drawer, open_drawer
 from kitchen_prefs_robot.motion.dropping import drop
+from kitchen_prefs_robot.motion.obstacles import Furniture
 from kitchen_prefs_robot.motion.outcomes import Outcome, Result
 from kitchen_prefs_robot.motion.picking import PickOutcome, pick, put_back
 
 __all__ = [
+    "Furniture",
     "Outcome",
     "PickOutcome",
     "Result",

@@ -6,7 +6,7 @@ import numpy as np
 
 from kitchen_prefs_robot.motion.kinematics import hand_pose, kinematics, turned_over
 from kitchen_prefs_robot.motion.moves import Arm, OnFrame, joint_path, line_path
-from kitchen_prefs_robot.motion.obstacles import Obstacles
+from kitchen_prefs_robot.motion.obstacles import Furniture, Obstacles
 from kitchen_prefs_robot.motion.outcomes import Outcome, Result
 from kitchen_prefs_robot.scene import World
 from kitchen_prefs_robot.scene.arm import HOME
@@ -53,39 +53,48 @@ class _Plan:
 
 
 def open_drawer(
-    world: World, drawer: str, on_frame: OnFrame | None = None, opening: float | None = None
+    world: World,
+    drawer: str,
+    furniture: Furniture | None = None,
+    on_frame: OnFrame | None = None,
 ) -> Outcome:
     """Pull a drawer open.
 
     Args:
         world: In which the arm moves; its hand is empty.
         drawer: "upper" or "lower". One that is open already stays so, and nothing moves.
+        furniture: What is known of drawers and stands; by default all, as it truly is.
         on_frame: Called with the world 50 times a simulated second.
-        opening: How far the drawer is open as cameras see it, m; by default as it truly is.
 
     Returns:
         How it ended; the arm is at home.
     """
-    opening = world.drawer_opening(drawer) if opening is None else max(opening, 0.0)
-    if opening > OPENED:
+    known = furniture or Furniture.true(world)
+    if known.openings[drawer] > OPENED:
         return Outcome(Result.DONE, 0.0)
-    return _slide(Arm(world, on_frame), drawer, opening, DRAWER_TRAVEL)
+    return _slide(Arm(world, on_frame), drawer, known, DRAWER_TRAVEL)
 
 
 def close_drawer(
-    world: World, drawer: str, on_frame: OnFrame | None = None, opening: float | None = None
+    world: World,
+    drawer: str,
+    furniture: Furniture | None = None,
+    on_frame: OnFrame | None = None,
 ) -> Outcome:
     """Push a drawer shut; as `open_drawer`."""
-    opening = world.drawer_opening(drawer) if opening is None else max(opening, 0.0)
-    if opening < SHUT:
+    known = furniture or Furniture.true(world)
+    if known.openings[drawer] < SHUT:
         return Outcome(Result.DONE, 0.0)
-    return _slide(Arm(world, on_frame), drawer, opening, 0.0)
+    return _slide(Arm(world, on_frame), drawer, known, 0.0)
 
 
-def _slide(arm: Arm, drawer: str, opening: float, goal: float) -> Outcome:
+def _slide(arm: Arm, drawer: str, known: Furniture, goal: float) -> Outcome:
     started = arm.world.data.time
-    at_handle, moved = _at_handle(drawer, opening), _at_handle(drawer, goal)
-    plan = _plan(arm.target, at_handle, moved, Obstacles(arm.world))
+    at_handle, moved = (
+        _at_handle(drawer, max(known.openings[drawer], 0.0)),
+        _at_handle(drawer, goal),
+    )
+    plan = _plan(arm.target, at_handle, moved, Obstacles(arm.world, known))
     if plan is None:
         return Outcome(Result.UNREACHABLE, 0.0)
     result = _execute(arm, plan)

@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 from kitchen_prefs_robot.motion.drawers import OPENED
 from kitchen_prefs_robot.motion.kinematics import kinematics
 from kitchen_prefs_robot.motion.moves import Arm, OnFrame, joint_path, line_path
-from kitchen_prefs_robot.motion.obstacles import Obstacles
+from kitchen_prefs_robot.motion.obstacles import Furniture, Obstacles
 from kitchen_prefs_robot.motion.outcomes import Outcome, Result
 from kitchen_prefs_robot.motion.picking import EMPTY, PickOutcome
 from kitchen_prefs_robot.scene import World
@@ -52,6 +52,7 @@ def drop(
     drawer: str,
     pick: PickOutcome,
     already: int = 0,
+    furniture: Furniture | None = None,
     on_frame: OnFrame | None = None,
 ) -> Outcome:
     """Drop what a pick has grasped.
@@ -62,15 +63,18 @@ def drop(
         pick: The outcome of the pick.
         already: How many dishes lie in that drawer: they are dropped to the right and to the left
             by turns.
+        furniture: What is known of drawers and stands; by default all, as it truly is.
         on_frame: Called with the world 50 times a simulated second.
 
     Returns:
-        How it ended. The arm is at home; where no path was found, as into a drawer that is not
-        open, it has not moved and still holds the dish (`put_back` puts it down).
+        How it ended. The arm is at home; where no path was found, or the drawer is not open, it
+        has not moved and still holds the dish (`put_back` puts it down).
     """
     arm, started = Arm(world, on_frame), world.data.time
-    is_open = world.drawer_opening(drawer) > OPENED
-    plan = _plan(arm.target, drawer, pick.held, already, Obstacles(world)) if is_open else None
+    known = furniture or Furniture.true(world)
+    if known.openings[drawer] <= OPENED:
+        return Outcome(Result.NOT_OPEN, 0.0)
+    plan = _plan(arm.target, drawer, pick.held, already, Obstacles(world, known))
     if plan is None:
         return Outcome(Result.UNREACHABLE, 0.0)
     if not arm.follow(plan.over):

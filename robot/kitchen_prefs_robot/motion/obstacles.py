@@ -1,8 +1,14 @@
 """Whether the arm, on a planned path, would strike itself, the table, the cabinet or a stand.
 
-The furniture's place is known, as on a real robot; where the dishes are, only the cameras can tell,
-so they are left out here.
+The table's and the cabinet's places are known, as on a real robot. How far drawers are open, and
+where stands and dishes are, only the cameras can tell: openings are given, and where it is not
+given where the stands are, they are left out as the dishes are, whose points a grasp keeps clear of.
 """
+
+from collections.abc import Mapping
+from copy import copy
+from dataclasses import dataclass
+from typing import Self
 
 import mujoco
 import numpy as np
@@ -10,22 +16,44 @@ import numpy as np
 from kitchen_prefs_robot.scene import World
 from kitchen_prefs_robot.scene.arm import ARM_BODY, ARM_JOINTS, PINCH
 from kitchen_prefs_robot.scene.layout import DRAWERS
+from kitchen_prefs_robot.scene.model import dish_body, stand_geom
 
 EVERY = 5  # commands from one check to the next: a tenth of a second
 MARGIN = 0.01  # m between what the hand holds and furniture: it was seen with errors
 DEPTH = 0.002  # m that two parts may overlap
 
 
-class Obstacles:
-    """The furniture of a world as it stands now.
+@dataclass(frozen=True)
+class Furniture:
+    """What is known of the furniture that is not always in one place.
 
-    Args:
-        world: Whose drawers' openings are read.
+    Attributes:
+        openings: How far each drawer is open, m.
+        stands: Whether it is known where the stands are; to the cameras they are points among
+            others.
     """
 
-    def __init__(self, world: World) -> None:
-        self._model, self._data = world.model, mujoco.MjData(world.model)
-        self._data.qpos[:] = world.data.qpos
+    openings: Mapping[str, float]
+    stands: bool
+
+    @classmethod
+    def true(cls, world: World) -> Self:
+        """All of it as it truly is."""
+        return cls({drawer: world.drawer_opening(drawer) for drawer in DRAWERS}, stands=True)
+
+
+class Obstacles:
+    """The furniture of a world, as far as it is known, in a copy of the model for planning.
+
+    Args:
+        world: Of which the model is copied, and where the arm is.
+        furniture: What is known of drawers and stands.
+    """
+
+    def __init__(self, world: World, furniture: Furniture) -> None:
+        self._model = copy(world.model)
+        self._ignore_what_is_not_known(world, furniture)
+        self._data = mujoco.MjData(self._model)
         self._joints = [self._model.joint(name).qposadr[0] for name in ARM_JOINTS]
         root = self._model.body(ARM_BODY).id
         hand = self._model.body("base_mount").id
@@ -36,7 +64,11 @@ class Obstacles:
         is_box = self._model.geom_type == mujoco.mjtGeom.mjGEOM_BOX
         is_furniture = self._is_drawer | (bodies == self._model.body("cabinet").id)
         self._boxes = np.flatnonzero(is_box & is_furniture)
-        self._is_dish = np.array([self._model.body(b).name.startswith("dish ") for b in bodies])
+        of_arm = [_within(self._model, body, root) for body in self._model.jnt_bodyid]
+        measured = self._model.jnt_qposadr[of_arm]  # the arm feels its own joints
+        self._data.qpos[measured] = world.data.qpos[measured]
+        for drawer, opening in furniture.openings.items():
+            self._data.joint(drawer).qpos[0] = opening
 
     def strikes(
         self, path: np.ndarray, held: np.ndarray | None = None, but_drawers: bool = False
@@ -53,6 +85,15 @@ class Obstacles:
             for joints in (*path[::EVERY], path[-1])
         )
 
+    def _ignore_what_is_not_known(self, world: World, furniture: Furniture) -> None:
+        """Let nothing collide with the dishes, nor with stands of which the place is not known."""
+        model, ignored = self._model, np.zeros(self._model.ngeom, dtype=bool)
+        for number, dish in enumerate(world.scene.dishes):
+            ignored |= model.geom_bodyid == model.body(dish_body(number)).id
+            if dish.on_stand and not furniture.stands:
+                ignored[model.geom(stand_geom(number)).id] = True
+        model.geom_contype[ignored] = model.geom_conaffinity[ignored] = 0
+
     def _arm_strikes(self, joints: np.ndarray, but_drawers: bool) -> bool:
         self._data.qpos[self._joints] = joints
         mujoco.mj_kinematics(self._model, self._data)
@@ -60,8 +101,7 @@ class Obstacles:
         mujoco.mj_collision(self._model, self._data)
         contacts = self._data.contact
         pairs = contacts.geom[contacts.dist < -DEPTH]
-        counts = self._is_arm[pairs].any(axis=1)
-        counts &= ~self._is_dish[pairs].any(axis=1) & ~self._is_hand[pairs].all(axis=1)
+        counts = self._is_arm[pairs].any(axis=1) & ~self._is_hand[pairs].all(axis=1)
         if but_drawers:
             counts &= ~self._is_drawer[pairs].any(axis=1)
         return bool(counts.any())

@@ -11,6 +11,7 @@ class Result(StrEnum):
     MISSED = "missed"  # the fingers closed on nothing
     DROPPED = "dropped"  # it was held and slipped out on the way
     UNREACHABLE = "unreachable"  # no grasp or no path was found; the arm has not moved
+    NOT_OPEN = "not open"  # the drawer is not open far enough to drop into; the arm has not moved
     JAMMED = "jammed"  # the drawer did not move all its way
     TIMED_OUT = "timed out"  # something was in the arm's way, and it gave up
 

@@ -9,7 +9,7 @@ import numpy as np
 from kitchen_prefs_robot.motion.grasps import Grasp, propose_grasps
 from kitchen_prefs_robot.motion.kinematics import kinematics, turned_over
 from kitchen_prefs_robot.motion.moves import Arm, OnFrame, joint_path, line_path
-from kitchen_prefs_robot.motion.obstacles import Obstacles
+from kitchen_prefs_robot.motion.obstacles import Furniture, Obstacles
 from kitchen_prefs_robot.motion.outcomes import Outcome, Result
 from kitchen_prefs_robot.scene import World
 from kitchen_prefs_robot.scene.arm import HOME
@@ -52,7 +52,11 @@ class _Plan:
 
 
 def pick(
-    world: World, points: np.ndarray, others_points: np.ndarray, on_frame: OnFrame | None = None
+    world: World,
+    points: np.ndarray,
+    others_points: np.ndarray,
+    furniture: Furniture | None = None,
+    on_frame: OnFrame | None = None,
 ) -> PickOutcome:
     """Pick the object that some points belong to.
 
@@ -60,6 +64,7 @@ def pick(
         world: In which the arm moves; its hand is empty.
         points: Of the object as it was seen, (N, 3) m in the base's frame.
         others_points: Of all else above the table, (M, 3).
+        furniture: What is known of drawers and stands; by default all, as it truly is.
         on_frame: Called with the world 50 times a simulated second.
 
     Returns:
@@ -67,7 +72,8 @@ def pick(
         otherwise.
     """
     arm, started = Arm(world, on_frame), world.data.time
-    plan = _plan(arm.target, points, others_points, Obstacles(world))
+    obstacles = Obstacles(world, furniture or Furniture.true(world))
+    plan = _plan(arm.target, points, others_points, obstacles)
     if plan is None:
         return _nothing_held(Result.UNREACHABLE, 0.0)
     result = _execute(arm, plan)

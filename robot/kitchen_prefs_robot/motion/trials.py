@@ -2,11 +2,13 @@
 
 from collections import Counter
 from collections.abc import Callable
+from dataclasses import replace
 
 import mujoco
 import numpy as np
 
 from kitchen_prefs_robot.motion.drawers import OPENED, close_drawer, open_drawer
+from kitchen_prefs_robot.motion.obstacles import Furniture
 from kitchen_prefs_robot.motion.picking import pick
 from kitchen_prefs_robot.motion.seen_points import Points
 from kitchen_prefs_robot.scene import PAPER_DISHES, World, sample_scene
@@ -63,9 +65,14 @@ def move_drawers(drawer: str, times: int, opening_error: float) -> Counter[str]:
     rng, counts = np.random.default_rng(0), Counter(opened=0, closed=0)
     for seed in range(times):
         world = World(sample_scene(seed))
-        open_drawer(world, drawer, opening=rng.normal(0.0, opening_error))
+        open_drawer(world, drawer, _mistaken(world, drawer, rng.normal(0.0, opening_error)))
         counts["opened"] += world.drawer_opening(drawer) > OPENED
-        seen = world.drawer_opening(drawer) + rng.normal(0.0, opening_error)
-        close_drawer(world, drawer, opening=seen)
+        close_drawer(world, drawer, _mistaken(world, drawer, rng.normal(0.0, opening_error)))
         counts["closed"] += world.drawer_opening(drawer) < CLOSED
     return counts
+
+
+def _mistaken(world: World, drawer: str, error: float) -> Furniture:
+    """The furniture with the opening of one drawer mistaken by `error` m."""
+    true = Furniture.true(world)
+    return replace(true, openings={**true.openings, drawer: true.openings[drawer] + error})

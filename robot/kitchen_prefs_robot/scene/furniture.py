@@ -40,9 +40,10 @@ def add_furniture(spec: mujoco.MjSpec) -> None:
         _add_drawer(cabinet, drawer)
 
 
-def add_stand(spec: mujoco.MjSpec, place: tuple[float, float]) -> None:
+def add_stand(spec: mujoco.MjSpec, name: str, place: tuple[float, float]) -> None:
     """Put a column on the table, x and y of its axis."""
     spec.worldbody.add_geom(
+        name=name,
         type=mujoco.mjtGeom.mjGEOM_CYLINDER,
         size=(layout.STAND_RADIUS, layout.STAND_HEIGHT / 2, 0.0),
         pos=(*place, layout.STAND_HEIGHT / 2),

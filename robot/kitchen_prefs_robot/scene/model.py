@@ -19,6 +19,11 @@ def dish_body(number: int) -> str:
     return f"dish {number}"
 
 
+def stand_geom(number: int) -> str:
+    """The geom of the stand that a scene's dish lies on."""
+    return f"stand {number}"
+
+
 def scene_spec(scene: Scene) -> mujoco.MjSpec:
     """Put the scene together: the arm, the furniture, the dishes and what sees them."""
     spec = arm_and_gripper()
@@ -33,5 +38,5 @@ def scene_spec(scene: Scene) -> mujoco.MjSpec:
     for number, dish in enumerate(scene.dishes):
         add_dish(spec, dish_body(number), dish.category, dish.colour)
         if dish.on_stand:
-            add_stand(spec, dish.position[:2])
+            add_stand(spec, stand_geom(number), dish.position[:2])
     return spec

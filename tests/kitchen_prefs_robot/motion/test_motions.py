@@ -48,7 +48,7 @@ def test_a_dish_for_a_closed_drawer_is_put_back():
     before = world.dish_pose(0)[0]
     picked = pick(world, *points_of(world))
     time = world.data.time
-    assert drop(world, "upper", picked).result is Result.UNREACHABLE
+    assert drop(world, "upper", picked).result is Result.NOT_OPEN
     assert world.data.time == time
     assert put_back(world, picked).succeeded
     assert world.dish_pose(0)[0] == pytest.approx(before, abs=0.02)

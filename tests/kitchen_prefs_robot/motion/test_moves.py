@@ -7,7 +7,7 @@ pytest.importorskip("mink", reason="needs the extra `robot`")
 
 from kitchen_prefs_robot.motion.kinematics import hand_pose, kinematics
 from kitchen_prefs_robot.motion.moves import JOINT_SPEED, PERIOD, joint_path, line_path
-from kitchen_prefs_robot.motion.obstacles import Obstacles
+from kitchen_prefs_robot.motion.obstacles import Furniture, Obstacles
 from kitchen_prefs_robot.scene import World, sample_scene
 from kitchen_prefs_robot.scene.arm import HOME
 
@@ -53,7 +53,8 @@ def test_joints_keep_to_their_speed():
 
 
 def test_furniture_is_in_the_way():
-    obstacles = Obstacles(World(sample_scene(0)))
+    world = World(sample_scene(0))
+    obstacles = Obstacles(world, Furniture.true(world))
     start = reached(0.45, -0.2, 0.3)
     above = line_path(start, hand_pose((0.45, -0.2, 0.1), DOWN, ACROSS))
     through = line_path(start, hand_pose((0.45, -0.2, -0.1), DOWN, ACROSS))
@@ -61,10 +62,24 @@ def test_furniture_is_in_the_way():
     assert obstacles.strikes(through)
 
 
-def test_what_the_hand_holds_can_strike_a_drawer():
+def test_what_the_hand_holds_strikes_a_drawer_that_is_known_to_be_open():
     world = World(sample_scene(0))
-    world.set_drawer("upper", 0.28)
     over = joint_path(np.array(HOME), reached(0.40, 0.40, 0.52))
     hanging = np.array([[0.0, 0.0, 0.05]])
-    assert not Obstacles(world).strikes(over, hanging)
-    assert Obstacles(world).strikes(over, hanging + np.array([0.0, 0.0, 0.21]))
+    low = hanging + np.array([0.0, 0.0, 0.21])
+    opened = Obstacles(world, Furniture({"upper": 0.28, "lower": 0.0}, stands=True))
+    assert not opened.strikes(over, hanging)
+    assert opened.strikes(over, low)
+    world.set_drawer("upper", 0.28)  # which is truly open, but was seen closed
+    closed = Obstacles(world, Furniture({"upper": 0.0, "lower": 0.0}, stands=True))
+    assert not closed.strikes(over, low)
+
+
+def test_a_stand_is_in_the_way_only_where_its_place_is_known():
+    world = World(sample_scene(0))
+    plate = next(dish for dish in world.scene.dishes if dish.on_stand)
+    x, y, _ = plate.position
+    through = reached(x, y, 0.15)[None]
+    assert Obstacles(world, Furniture.true(world)).strikes(through)
+    seen = Furniture({"upper": 0.0, "lower": 0.0}, stands=False)
+    assert not Obstacles(world, seen).strikes(through)
