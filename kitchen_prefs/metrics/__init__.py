@@ -10,6 +10,7 @@ people_*    the same for the second tier
 from kitchen_prefs.metrics.episode import Episode
 from kitchen_prefs.metrics.intervals import (
     Interval,
+    mean_of_groups,
     mean_of_splits,
     mean_of_splits_all,
     prompt_use,
@@ -52,6 +53,7 @@ __all__ = [
     "count_failure_modes",
     "edit_similarity",
     "failure_modes",
+    "mean_of_groups",
     "mean_of_splits",
     "mean_of_splits_all",
     "packing_efficiency",

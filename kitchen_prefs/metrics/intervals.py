@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from math import ceil, floor
 from typing import Protocol, Self
 
 import numpy as np
@@ -87,6 +88,29 @@ def wilson(successes: int, trials: int) -> Interval:
     test = binomtest(successes, trials)
     low, high = test.proportion_ci(method="wilson")
     return Interval(test.statistic, float(low), float(high))
+
+
+def mean_of_groups(groups: Sequence[Sequence[float]]) -> Interval:
+    """The mean of values that come in groups, with the interval of resampling whole groups.
+
+    The values of a group, such as the episodes of one scene, are not independent. Where all groups
+    have one mean, resampling has no width; the interval is then Wilson's over the groups.
+
+    Args:
+        groups: The values of each group, from 0 to 1.
+
+    Raises:
+        ValueError: If there are no groups.
+    """
+    if not groups:
+        raise ValueError("There are no episodes to summarise.")
+    values = [np.array(group, dtype=float) for group in groups]
+    mean, count = float(np.concatenate(values).mean()), len(groups)
+    if np.allclose([group.mean() for group in values], mean):
+        successes = round(mean * count, DIGITS)  # a whole number of groups, or between two
+        low, high = wilson(floor(successes), count).low, wilson(ceil(successes), count).high
+        return Interval(mean, low, high)
+    return interval_of(mean, _resample_groups(values, np.random.default_rng(0)))
 
 
 def prompt_use(episodes: Sequence[Episode], swapped: Sequence[Episode]) -> Interval:

@@ -10,10 +10,12 @@ from made_up_episodes import episode_of, episodes
 from kitchen_prefs.metrics import (
     METRICS,
     Interval,
+    mean_of_groups,
     packing_efficiency,
     prompt_use,
     summarise,
     summarise_all,
+    wilson,
     wilson_success,
 )
 from kitchen_prefs.metrics.scores import turn_accuracy
@@ -103,3 +105,21 @@ def test_success_has_a_width_even_where_all_succeed(successes, low, high):
     interval = wilson_success(perfect + failed)
     assert interval.mean == successes / 10
     assert (interval.low, interval.high) == pytest.approx((low, high), abs=0.001)
+
+
+def test_values_of_one_group_do_not_narrow_its_interval():
+    alone = mean_of_groups([[0.0], [1.0], [0.5], [1.0]])
+    assert mean_of_groups([[0.0] * 9, [1.0] * 9, [0.5] * 9, [1.0] * 9]) == alone
+    assert alone.low < alone.mean == 0.625 < alone.high
+
+
+def test_groups_of_one_mean_have_the_interval_of_wilson():
+    assert mean_of_groups([[1.0, 1.0]] * 10) == wilson(10, 10)
+    between = mean_of_groups([[0.5, 1.0]] * 10)  # 7.5 of 10
+    assert (between.low, between.mean, between.high) == (
+        wilson(7, 10).low,
+        0.75,
+        wilson(8, 10).high,
+    )
+    with pytest.raises(ValueError, match="no episodes"):
+        mean_of_groups([])
