@@ -2,9 +2,7 @@
 
 The drawers stand for the racks of the dishwasher, the upper one for the top one; the drop pose of
 the open one is the only place for the dish in hand. The cabinet has no door and the table no sink,
-so neither has a row. (A row for an open door makes no difference to the kitchen's checkpoints: of
-the dishes of 40 validation sessions ttp_quick gets .56 right with it and .52 without, ttp_plus .51
-and .50; intervals are .06 to either side.)
+so neither has a row.
 """
 
 from collections.abc import Sequence
