@@ -167,7 +167,7 @@ ROBOT = {
         "kitchen_prefs.physics kitchen_prefs.preferences kitchen_prefs.rendering "
         "kitchen_prefs.simulation kitchen_prefs.utils"
     ),
-    "motion": "scene kitchen_prefs.rendering",
+    "motion": "perception scene kitchen_prefs.rendering",
     "perception": "scene kitchen_prefs.utils",
     "real_to_sim": "perception scene task kitchen_prefs.simulation",
     "demonstrations": (

@@ -59,14 +59,14 @@ def demonstrate(
         pairs = list(product(scene, preference))
         for seed, number in tqdm(pairs, "Demonstrating", unit="episode"):
             shown = record(seed, number, colours, lamp, depth_noise)
-            misread.append(shown.misread)
+            misread.append(len({own for own, _ in shown.misread}))
             yield shown
 
     root = out or dataset_root(NAME)
     write_demonstrations(recorded(), root)
     typer.echo(
-        f"{len(misread)} demonstrations are in {root}; {sum(misread)} dishes in hand were taken "
-        "for another category."
+        f"{len(misread)} demonstrations are in {root}; {sum(misread)} dishes were taken for "
+        "another category."
     )
 
 

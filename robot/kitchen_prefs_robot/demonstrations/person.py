@@ -6,7 +6,7 @@ import numpy as np
 
 from kitchen_prefs.simulation.layout import COUNTER_HEIGHT
 from kitchen_prefs_robot.perception.regions import HAND
-from kitchen_prefs_robot.real_to_sim import measure_work_areas
+from kitchen_prefs_robot.real_to_sim import measure_counter
 from kitchen_prefs_robot.scene import World
 from kitchen_prefs_robot.scene.layout import (
     CABINET_ROTATION,
@@ -39,7 +39,7 @@ class Person:
     def __init__(self, world: World, preference: DrawerPreference) -> None:
         self._world = world
         self._preference = preference
-        self._counter = measure_work_areas(noise=0.0)["counter"]
+        self._counter = measure_counter(noise=0.0)
         self._opened: str | None = None
         self._held: int | None = None
         self._drawers: dict[int, str] = {}  # dish -> where it has been put

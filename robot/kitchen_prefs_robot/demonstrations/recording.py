@@ -8,15 +8,16 @@ import numpy as np
 from kitchen_prefs_robot.demonstrations.decisions import decision_between
 from kitchen_prefs_robot.demonstrations.person import Person
 from kitchen_prefs_robot.demonstrations.preferences import human_preference
-from kitchen_prefs_robot.perception.cameras import Cameras, laboratory_poses
+from kitchen_prefs_robot.perception.cameras import Cameras, displaced_poses
 from kitchen_prefs_robot.perception.detection import Sight, perceive
 from kitchen_prefs_robot.perception.known_dishes import known_dishes
-from kitchen_prefs_robot.real_to_sim import measure_work_areas, to_drawers_state
+from kitchen_prefs_robot.real_to_sim import measure_counter, to_drawers_state
 from kitchen_prefs_robot.scene import World, sample_scene
 from kitchen_prefs_robot.scene.tableware import Colours
 from kitchen_prefs_robot.scene.views import PICTURE_SIZE
-from kitchen_prefs_robot.task.decisions import choices
+from kitchen_prefs_robot.task.decisions import Decision, Pick, Place, choices
 from kitchen_prefs_robot.task.rows import observe, prompt_of
+from kitchen_prefs_robot.task.state import DrawersState
 
 
 @dataclass(frozen=True)
@@ -29,7 +30,8 @@ class HumanDemonstration:
         pictures: What each camera saw before each decision, (T, H, W, 3) uint8.
         sets: The instance set of each decision, (N, 13) each.
         chosen: The row that each decision chose.
-        in_hand: The category of the dish in hand as it was seen, and as it was, at each decision.
+        taken_for: The category that the dish of each decision was taken for, and its own; None for
+            a drawer.
     """
 
     scene: int
@@ -37,7 +39,7 @@ class HumanDemonstration:
     pictures: dict[str, np.ndarray]
     sets: tuple[np.ndarray, ...]
     chosen: tuple[int, ...]
-    in_hand: tuple[tuple[str | None, str | None], ...]
+    taken_for: tuple[tuple[str | None, str | None], ...]
 
     @property
     def prompt(self) -> np.ndarray:
@@ -45,9 +47,10 @@ class HumanDemonstration:
         return prompt_of(self.sets, self.chosen)
 
     @property
-    def misread(self) -> int:
-        """How many dishes were taken for another category while they were in hand."""
-        return sum(seen != true for seen, true in self.in_hand)
+    def misread(self) -> tuple[tuple[str, str], ...]:
+        """Own category, and the one that it was taken for, of dishes that were misread."""
+        mistakes = {(own, seen) for seen, own in self.taken_for if own and seen and own != seen}
+        return tuple(sorted(mistakes))
 
 
 def record(
@@ -56,6 +59,7 @@ def record(
     colours: Colours = "distinct",
     lamp: float = 0.0,
     depth_noise: float = 1.0,
+    camera_error: float = 0.0,
 ) -> HumanDemonstration:
     """Let a person demonstrate a preference, and look before each decision and after the last.
 
@@ -65,6 +69,8 @@ def record(
         colours: Of the dishes, "distinct" or "alike".
         lamp: How much the light changes at most, as a share of its brightness.
         depth_noise: Multiplies the depth's error.
+        camera_error: m by which each camera's estimated position is off, standard deviation of each
+            coordinate.
 
     Raises:
         NoOpenGLError: If there is no OpenGL library to draw with.
@@ -75,7 +81,8 @@ def record(
     known = known_dishes(shown.categories, colours)
     world = World(sample_scene(scene, shown.categories, colours, lamp))
     person, sights, pictures, held = Person(world, shown), [], [], []
-    with Cameras(world, laboratory_poses(), *PICTURE_SIZE, depth_noise, scene) as cameras:
+    poses = displaced_poses(camera_error, scene)
+    with Cameras(world, poses, *PICTURE_SIZE, depth_noise, scene) as cameras:
         while True:
             frames = cameras.take()
             sights.append(perceive(cameras.cloud(frames), known))
@@ -85,10 +92,15 @@ def record(
             pictures.append({camera: frame.colour for camera, frame in frames.items()})
             held.append(person.holds)
             person.act()
-    sets, chosen, seen = _understand(sights, scene)
+    states, decisions = _understand(sights, scene)
+    sets = tuple(observe(state, step) for step, state in enumerate(states))
+    pairs = list(zip(states, decisions, strict=True))
+    chosen = tuple(choices(state).index(decision) for state, decision in pairs)
+    seen = [_category(state, decision) for state, decision in pairs]
+    own = [_own_category(decision, held[step:]) for step, decision in enumerate(decisions)]
     by_camera = {camera: np.stack([p[camera] for p in pictures]) for camera in world.cameras}
-    in_hand = tuple(zip(seen, held, strict=True))
-    return HumanDemonstration(scene, preference, by_camera, sets, chosen, in_hand)
+    taken_for = tuple(zip(seen, own, strict=True))
+    return HumanDemonstration(scene, preference, by_camera, sets, chosen, taken_for)
 
 
 def _check(sights: list[Sight], scene: int) -> None:
@@ -103,22 +115,31 @@ def _check(sights: list[Sight], scene: int) -> None:
             raise ValueError(f"Scene {scene}, look {len(sights)}: {touching.sentence}")
 
 
-def _understand(
-    sights: list[Sight], scene: int
-) -> tuple[tuple[np.ndarray, ...], tuple[int, ...], list[str | None]]:
-    """The instance set, the chosen row and the category in hand of each decision."""
-    areas = measure_work_areas(seed=scene)
-    sets, chosen, in_hand = [], [], []
+def _understand(sights: list[Sight], scene: int) -> tuple[list[DrawersState], list[Decision]]:
+    """What was known before each decision, and the decision."""
+    counter = measure_counter(seed=scene)
+    states, decisions = [], []
     for step, (before, after) in enumerate(pairwise(sights)):
-        state = to_drawers_state(before.dishes, before.openings, areas)
+        states.append(to_drawers_state(before.dishes, before.openings, counter))
         try:
-            decision = decision_between(before, after)
+            decisions.append(decision_between(before, after))
         except ValueError as error:
             raise ValueError(
                 f"Looks {step + 1} and {step + 2} of the demonstration in scene {scene} cannot be "
                 f"understood: {error}."
             ) from error
-        sets.append(observe(state, step))
-        chosen.append(choices(state).index(decision))
-        in_hand.append(state.in_hand)
-    return tuple(sets), tuple(chosen), in_hand
+    return states, decisions
+
+
+def _category(state: DrawersState, decision: Decision) -> str | None:
+    """The category that the dish of a decision is taken for."""
+    if isinstance(decision, Pick):
+        return state.dishes[decision.dish].category
+    return state.in_hand if isinstance(decision, Place) else None
+
+
+def _own_category(decision: Decision, held: list[str | None]) -> str | None:
+    """The category of the dish of a decision, from what the hand holds before each from it on."""
+    if isinstance(decision, Pick):
+        return held[1]
+    return held[0] if isinstance(decision, Place) else None

@@ -2,11 +2,13 @@
 
 A frame is a decision: what the cameras saw before it, the instance set made of that, and the row
 that was chosen, in the columns of `kitchen_prefs.datasets.columns`. `meta/demonstrations.json` says
-which scene and which dishes each episode shows.
+which scene, preference and dishes each episode shows, and which dishes were misread.
 """
 
 import json
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -34,6 +36,46 @@ ROBOT_TYPE = "franka_panda"
 MADE_OF = Path("meta") / "demonstrations.json"
 CARD = Path(__file__).with_name("card.md")
 COLUMNS = (SETS, "action", "chosen_index", "preference", "next.done")
+
+
+@dataclass(frozen=True)
+class Origin:
+    """What an episode of a data set shows.
+
+    Attributes:
+        scene: The seed of the scene.
+        preference: The number of the preference.
+        misread: As `HumanDemonstration.misread`.
+    """
+
+    scene: int
+    preference: int
+    misread: tuple[tuple[str, str], ...]
+
+
+class NoDataSetError(ValueError):
+    """There is no data set in a folder."""
+
+    def __init__(self, root: Path) -> None:
+        super().__init__(f"There is no data set of demonstrations in {root}; give its folder.")
+
+
+@contextmanager
+def damage_told(root: Path) -> Iterator[None]:
+    """Say of a data set that cannot be read that it is damaged, or another one.
+
+    Raises:
+        ValueError: If what is done with it fails.
+    """
+    try:
+        yield
+    except NoDataSetError:
+        raise
+    except (pa.ArrowException, ValueError, KeyError, TypeError, AttributeError, OSError) as error:
+        raise ValueError(
+            f"{root} is damaged or no data set of these demonstrations; make it again with "
+            "`kitchen-prefs robot demonstrate`."
+        ) from error
 
 
 def write_demonstrations(demonstrations: Iterable[HumanDemonstration], root: Path) -> None:
@@ -69,17 +111,8 @@ def read_prompt(root: Path, episode: int = 0) -> np.ndarray:
     Raises:
         ValueError: If there is no such data set or episode.
     """
-    paths = sorted(root.glob("data/*/*.parquet"))
-    if not paths:
-        raise ValueError(f"There is no data set of demonstrations in {root}; give its folder.")
-    wanted = [SETS, "chosen_index", "episode_index"]
-    try:
-        table = pa.concat_tables([pq.read_table(path, columns=wanted) for path in paths])
-    except (pa.ArrowInvalid, KeyError) as error:
-        raise ValueError(
-            f"{root} is damaged or no data set of kitchen_prefs; make it again with "
-            "`kitchen-prefs robot demonstrate`."
-        ) from error
+    with damage_told(root):
+        table = read_frames(root, (SETS, "chosen_index", "episode_index"))
     numbers = flat_numbers(table["episode_index"])
     chosen = flat_numbers(table["chosen_index"])[numbers == episode]
     if len(chosen) == 0:
@@ -89,31 +122,42 @@ def read_prompt(root: Path, episode: int = 0) -> np.ndarray:
     return prompt_of([instances.unpad(one) for one in sets], chosen.tolist())
 
 
-def require_same_dishes(root: Path, episode: int, categories: Iterable[str]) -> None:
-    """Make sure that a demonstration shows the dishes of a scene.
+def read_origin(root: Path, episode: int = 0) -> Origin:
+    """What an episode of a data set shows.
 
     Args:
         root: The data set's folder.
-        episode: The demonstration's number.
-        categories: Of the scene's dishes.
+        episode: Its number.
 
     Raises:
-        ValueError: If it does not, or if there is no such demonstration.
+        ValueError: If there is no such data set or episode.
     """
     file = root / MADE_OF
     if not file.is_file():
-        raise ValueError(f"There is no data set of demonstrations in {root}; give its folder.")
-    episodes = json.loads(file.read_text())["episodes"]
-    if not 0 <= episode < len(episodes):
+        raise NoDataSetError(root)
+    with damage_told(root):
+        episodes = json.loads(file.read_text())["episodes"]
+        origins = [
+            Origin(int(one["scene"]), int(one["preference"]), _pairs(one.get("misread", [])))
+            for one in episodes
+        ]
+    if episode >= len(origins):
         raise ValueError(
-            f"There is no episode {episode} in {root}; the last is {len(episodes) - 1}."
+            f"There is no episode {episode} in {root}; the last is {len(origins) - 1}."
         )
-    shown, there = set(episodes[episode]["dishes"]), set(categories)
-    if shown != there:
-        raise ValueError(
-            f"The demonstration shows {', '.join(sorted(shown))}, but the scene has "
-            f"{', '.join(sorted(there))}; give a demonstration of the same dishes."
-        )
+    return origins[episode]
+
+
+def read_frames(root: Path, columns: Sequence[str]) -> pa.Table:
+    """Some columns of a data set, in frame order.
+
+    Raises:
+        ValueError: If there is no data set.
+    """
+    paths = sorted(root.glob("data/*/*.parquet"))
+    if not paths:
+        raise NoDataSetError(root)
+    return pa.concat_tables([pq.read_table(path, columns=list(columns)) for path in paths])
 
 
 def _write(demonstrations: Iterable[HumanDemonstration], root: Path) -> list[dict[str, Any]]:
@@ -131,10 +175,22 @@ def _write(demonstrations: Iterable[HumanDemonstration], root: Path) -> list[dic
             dataset.add_frame(frame)
         dataset.save_episode()
         dishes = sorted(human_preference(shown.preference).categories)
-        made_of.append({"scene": shown.scene, "preference": shown.preference, "dishes": dishes})
+        made_of.append(
+            {
+                "scene": shown.scene,
+                "preference": shown.preference,
+                "dishes": dishes,
+                "misread": shown.misread,
+            }
+        )
     if dataset is not None:
         dataset.finalize()
     return made_of
+
+
+def _pairs(misread: Iterable[Sequence[str]]) -> tuple[tuple[str, str], ...]:
+    """Pairs of categories as JSON has them."""
+    return tuple((str(own), str(seen)) for own, seen in misread)
 
 
 def _videos(shown: HumanDemonstration) -> dict[str, dict[str, Any]]:

@@ -10,12 +10,10 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
-import pyarrow as pa
-import pyarrow.parquet as pq
 
 from kitchen_prefs import instances
 from kitchen_prefs.datasets.columns import SETS, fingerprint, flat_numbers, read_tasks
-from kitchen_prefs_robot.demonstrations.storage import COLUMNS
+from kitchen_prefs_robot.demonstrations.storage import COLUMNS, damage_told, read_frames
 
 FINGERPRINTS = Path(__file__).with_name("fingerprints.json")
 WIDTHS = {SETS: (instances.CAPACITY, instances.COLUMNS), "action": (7,)}
@@ -34,7 +32,8 @@ def verify_demonstrations(name: str, root: Path) -> Iterator[str]:
     Raises:
         ValueError: If something does not hold; the message says what.
     """
-    columns = _read(root)
+    with damage_told(root):
+        columns, tasks = _read(root)
     sets, chosen = columns[SETS], columns["chosen_index"]
     frames = np.arange(len(chosen))
     if not instances.choosable(sets)[frames, chosen].all():
@@ -44,7 +43,7 @@ def verify_demonstrations(name: str, root: Path) -> Iterator[str]:
         raise ValueError(f"{root} is wrong: an action is not the pose of its chosen row.")
     yield "Each action is the pose of its chosen row."
     published = json.loads(FINGERPRINTS.read_text()).get(name)
-    found = fingerprint(columns, read_tasks(root))
+    found = fingerprint(columns, tasks)
     if published not in (None, found):
         raise ValueError(
             f"{root} differs from the published {name}: its rows are others. Demonstrations made "
@@ -53,13 +52,11 @@ def verify_demonstrations(name: str, root: Path) -> Iterator[str]:
     yield f"Its fingerprint is {found}{'' if published else ', and none is published yet'}."
 
 
-def _read(root: Path) -> dict[str, np.ndarray]:
-    """The columns that make the fingerprint, in frame order."""
-    paths = sorted(root.glob("data/*/*.parquet"))
-    if not paths:
-        raise ValueError(f"There is no data set of demonstrations in {root}; give its folder.")
-    table = pa.concat_tables([pq.read_table(path, columns=list(COLUMNS)) for path in paths])
-    return {
+def _read(root: Path) -> tuple[dict[str, np.ndarray], list[str]]:
+    """The columns that make the fingerprint, in frame order, and the tasks."""
+    table = read_frames(root, COLUMNS)
+    columns = {
         column: flat_numbers(table[column]).reshape(-1, *WIDTHS.get(column, ()))
         for column in COLUMNS
     }
+    return columns, read_tasks(root)

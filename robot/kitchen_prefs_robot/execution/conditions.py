@@ -1,9 +1,18 @@
 """What an experiment leaves to the robot, and what it gives."""
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, get_args
 
+from kitchen_prefs.utils.suggestions import suggest
 from kitchen_prefs_robot.scene.tableware import Colours
+
+Perception = Literal["cameras", "truth"]
+Grasps = Literal["arm", "truth"]
+CHOICES = {
+    "perception": get_args(Perception),
+    "grasps": get_args(Grasps),
+    "colours": get_args(Colours),
+}
 
 
 @dataclass(frozen=True)
@@ -20,15 +29,23 @@ class Conditions:
             coordinate, beside the error of the calibration by tags.
         grasp_failures: The share of picks that are led astray, so that the hand misses the dish or
             pushes it.
+
+    Raises:
+        ValueError: If perception, grasps or colours are none of those.
     """
 
-    perception: Literal["cameras", "truth"] = "cameras"
-    grasps: Literal["arm", "truth"] = "arm"
+    perception: Perception = "cameras"
+    grasps: Grasps = "arm"
     colours: Colours = "distinct"
     lamp: float = 0.1
     depth_noise: float = 1.0
     camera_error: float = 0.0
     grasp_failures: float = 0.0
+
+    def __post_init__(self) -> None:
+        for name, allowed in CHOICES.items():
+            if (chosen := getattr(self, name)) not in allowed:
+                raise ValueError(f"There are no {name} {chosen!r}. {suggest(str(chosen), allowed)}")
 
 
 REAL = Conditions()

@@ -5,37 +5,36 @@ OUT/looks/03.png      what the front camera saw before decision 3, and the clust
 OUT/episode.mp4       the whole robot, captioned
 OUT/episode.rrd       the same for rerun, if it is installed
 OUT/outcome.json      what came of it
+
+Decisions count from 1; the last picture was taken after the last of them. While the hand holds a
+dish no clusters are looked for.
 """
 
 import json
 from dataclasses import asdict
-from fractions import Fraction
 from pathlib import Path
-from textwrap import fill
+from typing import Self
 
-import av
 import numpy as np
-from PIL import Image, ImageDraw, ImageFont
+from PIL import Image
 
 from kitchen_prefs.utils.files import write_json
 from kitchen_prefs_robot.execution.episode import RobotEpisode, Step
 from kitchen_prefs_robot.execution.outcomes import EpisodeOutcome
 from kitchen_prefs_robot.execution.rerun_log import RerunLog
+from kitchen_prefs_robot.execution.video import Video
 from kitchen_prefs_robot.execution.watching import Watcher
 from kitchen_prefs_robot.perception.cameras import laboratory_poses
 from kitchen_prefs_robot.perception.pictures import beside_clusters
 from kitchen_prefs_robot.scene import Pictures, World
+from kitchen_prefs_robot.scene.views import VISITOR
 from kitchen_prefs_robot.task.decisions import Decision, Pick, Place, Toggle
 from kitchen_prefs_robot.task.state import DrawersState
 
-CAMERA, VISITOR = "front", "visitor"
+CAMERA = "front"
 SIZE = (480, 360)  # pixels of the video
 EVERY = 5  # commands of the arm, 50 a simulated second, from one frame of the video to the next
-FPS = 20  # twice as fast as it was
 STILL = 12  # frames that the last one stands
-BAR = 58  # pixels of the caption's bar: three lines
-CHARACTERS = 76  # of 11 pixels that fit beside one another
-INK, PAPER = (250, 248, 243), (38, 46, 51)
 
 
 def in_words(state: DrawersState, decision: Decision) -> str:
@@ -50,7 +49,7 @@ def in_words(state: DrawersState, decision: Decision) -> str:
 
 
 class DecisionLog(Watcher):
-    """Watches an episode and writes what it saw.
+    """Watches an episode and writes what it saw; a context manager that closes its files.
 
     Args:
         folder: An empty folder, which is filled.
@@ -59,25 +58,37 @@ class DecisionLog(Watcher):
     def __init__(self, folder: Path) -> None:
         self._folder = folder
         (folder / "looks").mkdir()
-        self._frames: list[Image.Image] = []
         self._rerun = RerunLog(folder / "episode.rrd")
         self._pictures: Pictures | None = None
+        self._video: Video | None = None
+        self._picture = np.zeros((*SIZE[::-1], 3), np.uint8)
         self._caption = ("", "")
         self._commands = 0
         self._touching: list[str] = []
 
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self._pictures is not None:
+            self._pictures.__exit__()
+        if self._video is not None:
+            self._video.close()
+        self._rerun.close()
+
     def look(self, episode: RobotEpisode) -> None:
         """Note the last decision, and what is seen before the next one."""
-        if episode.steps:
-            self._write_step(len(episode.steps) - 1, episode.steps[-1])
+        done = len(episode.steps)
+        if done:
+            self._write_step(done, episode.steps[-1])
         self._touching = [touching.sentence for touching in episode.look.touching]
-        if not episode.look.frames:
+        if episode.blind or not episode.look.frames:
             return
         frame = episode.look.frames[CAMERA]
         poses, found = laboratory_poses(), episode.look.detections
         picture = beside_clusters(frame, poses[CAMERA], found)
-        Image.fromarray(picture).save(self._folder / "looks" / f"{len(episode.steps):02}.png")
-        self._rerun.look(len(episode.steps), frame, found)
+        Image.fromarray(picture).save(self._folder / "looks" / f"{done + 1:02}.png")
+        self._rerun.look(done + 1, frame, found)
 
     def decide(self, episode: RobotEpisode, decision: Decision) -> None:
         """Caption the frames that follow with the decision that is about to be executed."""
@@ -92,20 +103,18 @@ class DecisionLog(Watcher):
         self._commands += 1
         if self._commands % EVERY:
             return
-        if self._pictures is None:
+        if self._pictures is None or self._video is None:
             self._pictures = Pictures(world, *SIZE)
-        self._frames.append(_captioned(self._pictures.colour(VISITOR), self._caption))
+            self._video = Video(self._folder / "episode.mp4", *SIZE)
+        self._picture = self._pictures.colour(VISITOR)
+        self._video.add(self._picture, *self._caption)
 
     def finish(self, outcome: EpisodeOutcome) -> None:
-        """Write the video and the outcome, and release OpenGL."""
-        if self._pictures is not None:
-            self._pictures.__exit__()
-        if self._frames:
-            last = np.asarray(self._frames[-1])[:-BAR]
-            share = f"{round(outcome.right * outcome.dishes)} of {outcome.dishes} dishes right"
-            self._frames += [_captioned(last, (self._caption[0], share))] * STILL
-            write_video(self._frames, self._folder / "episode.mp4")
-        self._rerun.close()
+        """Write the outcome, and let the video end with it."""
+        share = f"{round(outcome.right * outcome.dishes)} of {outcome.dishes} dishes right"
+        if self._video is not None:
+            for _ in range(STILL):
+                self._video.add(self._picture, self._caption[0], share)
         write_json(self._folder / "outcome.json", asdict(outcome))
 
     def _write_step(self, number: int, step: Step) -> None:
@@ -122,27 +131,3 @@ class DecisionLog(Watcher):
         with (self._folder / "decisions.jsonl").open("a") as file:
             file.write(f"{json.dumps(line)}\n")
         self._rerun.step(number, f"{line['chosen']}: {step.refusal or step.result}")
-
-
-def write_video(frames: list[Image.Image], path: Path) -> None:
-    """Write pictures of one size as an MP4 that browsers show."""
-    with av.open(str(path), "w") as container:
-        stream = container.add_stream("libx264", rate=Fraction(FPS))
-        stream.width, stream.height = frames[0].size
-        stream.pix_fmt = "yuv420p"
-        for frame in frames:
-            container.mux(stream.encode(av.VideoFrame.from_image(frame)))
-        container.mux(stream.encode())
-
-
-def _captioned(picture: np.ndarray, caption: tuple[str, str]) -> Image.Image:
-    """A picture, (H, W, 3) uint8, above a bar: the preference in words, and the decision."""
-    height, width, _ = picture.shape
-    page = Image.new("RGB", (width, height + BAR), PAPER)
-    page.paste(Image.fromarray(picture))
-    draw = ImageDraw.Draw(page)
-    preference, decision = caption
-    small, large = ImageFont.load_default(11), ImageFont.load_default(14)
-    draw.multiline_text((8, height + 4), fill(preference, CHARACTERS), INK, small, spacing=1)
-    draw.text((8, height + 36), decision, INK, large)
-    return page

@@ -20,7 +20,7 @@ from kitchen_prefs_robot.task.decisions import Place
 from kitchen_prefs_robot.task.rollouts import TASK
 from kitchen_prefs_robot.task.rows import chosen_decision
 
-SCENES = 50
+SCENES = range(50)  # on which settings of perception were chosen, too: `robot table` has others
 MAX_EPISODE_STEPS = 24  # twice the expert's decisions
 
 
@@ -50,8 +50,12 @@ class Drawers(gymnasium.Env):
     Args:
         conditions: What is left to the robot, see `execution.conditions`; all of it by default.
         task_id: The number of the preference whose trials alone are simulated; None for all.
+            Trials are scenes 0 to 49 with each preference.
         flat: Whether `instances` is flat, (936,), as LeRobot's data sets have it.
         render_mode: None or "rgb_array".
+
+    Raises:
+        ValueError: If there is no such preference.
     """
 
     metadata = {"render_modes": ["rgb_array"], "render_fps": 1}  # noqa: RUF012 (gymnasium's own form)
@@ -66,6 +70,8 @@ class Drawers(gymnasium.Env):
         flat: bool = False,
         render_mode: str | None = None,
     ) -> None:
+        if task_id is not None:
+            human_preference(task_id)  # that there is one
         self.render_mode = render_mode
         self.conditions = conditions or Conditions()
         known = trials(SCENES, len(HUMAN_PREFERENCES))
@@ -82,7 +88,11 @@ class Drawers(gymnasium.Env):
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[dict[str, Any], dict[str, Any]]:
-        """Start a trial: number `seed`, modulo their number, or one at random."""
+        """Start a trial: number `seed`, modulo their number, or one at random.
+
+        Raises:
+            ValueError: If the cameras see no dish, no table or no drawer.
+        """
         super().reset(seed=seed)
         number = int(self.np_random.integers(len(self._trials))) if seed is None else seed
         trial = self._trials[number % len(self._trials)]
@@ -90,6 +100,8 @@ class Drawers(gymnasium.Env):
         self._prompt = prompt_for(trial.scene, trial.preference, self.conditions)
         wanted = human_preference(trial.preference)
         self._episode = RobotEpisode(trial.scene, wanted, self.conditions)
+        if self._episode.blind:
+            raise ValueError(self._episode.blind)
         return self._observe(), self._info("", None)
 
     def step(self, action: np.ndarray) -> tuple[dict[str, Any], float, bool, bool, dict[str, Any]]:
@@ -146,7 +158,7 @@ class Drawers(gymnasium.Env):
             self._pixels = {camera: frame.colour for camera, frame in frames.items()}
         width, height = PICTURE_SIZE
         blank = np.zeros((height, width, 3), np.uint8)  # where truth is given, nobody looks
-        observed = observe_episode(episode, self._prompt.copy())
+        observed = observe_episode(episode, self._prompt.rows.copy())
         return observed | {
             "instances": observed["instances"].reshape(self._set_shape),
             "pixels": {camera: self._pixels.get(camera, blank) for camera in CAMERAS},

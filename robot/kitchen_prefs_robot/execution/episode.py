@@ -8,9 +8,11 @@ import numpy as np
 
 from kitchen_prefs_robot.execution.conditions import REAL, Conditions
 from kitchen_prefs_robot.execution.hands import ArmHand, Hand, InvisibleHand
-from kitchen_prefs_robot.execution.looking import TableDish, make_eyes
+from kitchen_prefs_robot.execution.looking import NOTHING_SEEN, TableDish, make_eyes
+from kitchen_prefs_robot.execution.whereabouts import nearest_on_table
 from kitchen_prefs_robot.motion.moves import OnFrame
 from kitchen_prefs_robot.motion.outcomes import Result
+from kitchen_prefs_robot.perception.not_seen import NotSeenError
 from kitchen_prefs_robot.scene import World, sample_scene
 from kitchen_prefs_robot.task.decisions import (
     Decision,
@@ -36,7 +38,8 @@ class Step:
         refusal: Why the rules of the drawers do not allow it, or an empty string.
         result: How the motion ended; None where it was refused.
         seen_as: The category that its dish was taken for; None if it is about no dish.
-        dish: The true number of that dish; None where the hand held none.
+        dish: The true number of that dish: the one in hand or, after a pick that failed, the one
+            that was reached for; None where there is none, or the decision was refused.
     """
 
     state: DrawersState
@@ -67,10 +70,10 @@ class RobotEpisode:
         look: The last look, without the dish in hand.
         steps: The decisions so far.
         limit: The number of decisions at which the episode is truncated: twice the expert's.
+        blind: What the cameras do not see, in a sentence, which ends the episode; else empty.
 
     Raises:
         NoOpenGLError: If there is no OpenGL library to draw with.
-        ValueError: If the cameras see no dish.
     """
 
     def __init__(
@@ -86,16 +89,18 @@ class RobotEpisode:
         self.preference = preference
         self.steps: list[Step] = []
         self.limit = LIMIT_FACTOR * (2 * len(preference.categories) + 4)
-        self._eyes = make_eyes(self.world, conditions, scene)
+        self.look, self.blind = NOTHING_SEEN, ""
         self._hand = _hand(self.world, conditions, scene, on_frame)
         self._in_hand: str | None = None
         self._placed: list[SeenDish] = []
-        self.look = self._eyes.look()
-        if not self.look.dishes:
+        self._eyes = make_eyes(self.world, conditions, scene)
+        try:
+            self._look()
+        except BaseException:
             self._eyes.close()
-            raise ValueError(
-                f"The cameras see no dish in scene {scene}; give another scene, or clear the view."
-            )
+            raise
+        if not self.look.dishes and not self.blind:
+            self.blind = f"The cameras see no dish in scene {scene}; clear the view."
 
     def __enter__(self) -> Self:
         return self
@@ -122,15 +127,22 @@ class RobotEpisode:
     @property
     def terminated(self) -> bool:
         """Whether the robot sees no dish, holds none, and both drawers are closed."""
-        return is_finished(self.state)
+        return not self.blind and is_finished(self.state)
 
     @property
     def truncated(self) -> bool:
-        """Whether the limit of decisions is reached before that."""
-        return not self.terminated and len(self.steps) >= self.limit
+        """Whether before that the limit of decisions is reached, or the robot does not see."""
+        return bool(self.blind) or (not self.terminated and len(self.steps) >= self.limit)
+
+    @property
+    def held(self) -> int | None:
+        """The true number of the dish in hand, for reports."""
+        return self._hand.held
 
     def decide(self, decision: Decision) -> Step:
-        """Execute a decision, and look again unless the hand hides the counter.
+        """Execute a decision, and look again.
+
+        While the hand holds a dish it hides the counter: then pictures are taken, but not read.
 
         Args:
             decision: One of `task.decisions.choices(state)`.
@@ -144,8 +156,17 @@ class RobotEpisode:
         step = Step(state, decision, refused, result, about, dish)
         self.steps.append(step)
         if not refused and self._in_hand is None:
-            self.look = self._eyes.look()
+            self._look()
+        elif not refused:
+            self.look = self.look.with_pictures(self._eyes.take())
         return step
+
+    def _look(self) -> None:
+        """Look anew, and note what cannot be done without and is not seen."""
+        try:
+            self.look = self._eyes.look()
+        except NotSeenError as error:
+            self.blind = str(error)
 
     def _about(self, decision: Decision) -> str | None:
         """The category that a decision's dish is taken for."""
@@ -162,10 +183,12 @@ class RobotEpisode:
         return self._drop(decision.drawer)
 
     def _pick(self, dish: TableDish) -> tuple[Result, int | None]:
+        reached_for = nearest_on_table(self.world, dish.middle)  # for reports
         result = self._hand.pick(dish, self.look)
-        if result is Result.DONE:
-            self._in_hand = dish.seen.category
-            self.look = self.look.without(dish)
+        if result is not Result.DONE:
+            return result, reached_for
+        self._in_hand = dish.seen.category
+        self.look = self.look.without(dish)
         return result, self._hand.held
 
     def _drop(self, drawer: str) -> tuple[Result, int | None]:

@@ -90,7 +90,7 @@ class ArmHand:
 
 
 class InvisibleHand:
-    """Moves dishes and drawers as a person does, without ever failing.
+    """Moves dishes and drawers as a person does, and misses only what is not there.
 
     Args:
         world: In which it acts.
@@ -109,8 +109,10 @@ class InvisibleHand:
         return Result.DONE
 
     def pick(self, dish: TableDish, look: Look) -> Result:
-        """Take the dish that is nearest to where one was seen."""
+        """Take the dish that was seen, or miss it where none stands."""
         self.held = nearest_on_table(self._world, dish.middle)
+        if self.held is None:
+            return Result.MISSED
         take_in_hand(self._world, self.held)
         return Result.DONE
 

@@ -12,13 +12,14 @@ from kitchen_prefs_robot.execution.conditions import Conditions
 from kitchen_prefs_robot.execution.whereabouts import is_on_table
 from kitchen_prefs_robot.motion.obstacles import Furniture
 from kitchen_prefs_robot.motion.seen_points import exact_points
-from kitchen_prefs_robot.perception.cameras import Cameras, laboratory_poses
+from kitchen_prefs_robot.perception.cameras import Cameras, displaced_poses
 from kitchen_prefs_robot.perception.cloud import Frame
 from kitchen_prefs_robot.perception.detection import Detection, Touching, perceive
 from kitchen_prefs_robot.perception.known_dishes import known_dishes
 from kitchen_prefs_robot.perception.regions import open_drawer
-from kitchen_prefs_robot.real_to_sim import measure_work_areas, to_drawers_state
+from kitchen_prefs_robot.real_to_sim import measure_counter, to_drawers_state
 from kitchen_prefs_robot.scene import World
+from kitchen_prefs_robot.scene.layout import DRAWERS
 from kitchen_prefs_robot.scene.views import PICTURE_SIZE
 from kitchen_prefs_robot.task.state import SeenDish
 
@@ -74,12 +75,22 @@ class Look:
         """The look without the dish that the hand has taken since."""
         return replace(self, dishes=tuple(other for other in self.dishes if other is not dish))
 
+    def with_pictures(self, frames: Mapping[str, Frame]) -> Self:
+        """The look with newer pictures, in which nothing was looked for."""
+        return replace(self, frames=frames, detections=(), touching=())
+
+
+NOTHING_SEEN = Look((), dict.fromkeys(DRAWERS, 0.0))
+
 
 class Eyes(Protocol):
     """Looks at a world."""
 
     def look(self) -> Look:
         """Look once."""
+
+    def take(self) -> Mapping[str, Frame]:
+        """Take pictures alone."""
 
     def close(self) -> None:
         """Release what looking needs."""
@@ -98,26 +109,23 @@ class CameraEyes:
     """
 
     def __init__(self, world: World, conditions: Conditions, seed: int) -> None:
-        rng = np.random.default_rng([seed, len("cameras")])
-        self.poses = {name: pose.copy() for name, pose in laboratory_poses().items()}
-        for pose in self.poses.values():
-            pose[:3, 3] += conditions.camera_error * rng.standard_normal(3)
+        poses = displaced_poses(conditions.camera_error, seed)
         categories = tuple(dict.fromkeys(dish.category for dish in world.scene.dishes))
         self._known = known_dishes(categories, conditions.colours)
-        self._areas = measure_work_areas(seed=seed)
-        self._cameras = Cameras(world, self.poses, *PICTURE_SIZE, conditions.depth_noise, seed)
+        self._counter = measure_counter(seed=seed)
+        self._cameras = Cameras(world, poses, *PICTURE_SIZE, conditions.depth_noise, seed)
         self._cameras.__enter__()
 
     def look(self) -> Look:
         """Take three pictures and find the dishes on the counter.
 
         Raises:
-            ValueError: If the cameras see no table, or not the front of a drawer.
+            NotSeenError: If the cameras see no table, or not the front of a drawer.
         """
-        frames = self._cameras.take()
+        frames = self.take()
         sight = perceive(self._cameras.cloud(frames), self._known)
         found = [dish for dish in sight.dishes if dish.place == "counter"]
-        state = to_drawers_state(found, sight.openings, self._areas)
+        state = to_drawers_state(found, sight.openings, self._counter)
 
         def others_of(dish: Detection) -> Callable[[], np.ndarray]:
             return lambda: sight.obstacles_beside(dish)
@@ -134,6 +142,10 @@ class CameraEyes:
             touching=sight.touching,
         )
 
+    def take(self) -> Mapping[str, Frame]:
+        """Take three pictures."""
+        return self._cameras.take()
+
     def close(self) -> None:
         """Release OpenGL."""
         self._cameras.__exit__()
@@ -144,7 +156,7 @@ class TrueEyes:
 
     def __init__(self, world: World, seed: int) -> None:
         self._world = world
-        self._counter = measure_work_areas(noise=0.0)["counter"]
+        self._counter = measure_counter(noise=0.0)
         self._rng = np.random.default_rng([seed, len("truth")])
 
     def look(self) -> Look:
@@ -157,6 +169,10 @@ class TrueEyes:
             if is_on_table(world, number)
         )
         return Look(dishes, Furniture.true(world).openings, stands_known=True)
+
+    def take(self) -> Mapping[str, Frame]:
+        """Take no pictures."""
+        return {}
 
     def close(self) -> None:
         """Do nothing: there is nothing to release."""

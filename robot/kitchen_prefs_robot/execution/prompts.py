@@ -1,6 +1,7 @@
 """What the robot is prompted with: a person's demonstration in another scene."""
 
 from contextlib import suppress
+from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
@@ -8,7 +9,7 @@ import numpy as np
 
 from kitchen_prefs_robot.demonstrations.preferences import human_preference
 from kitchen_prefs_robot.demonstrations.recording import record
-from kitchen_prefs_robot.demonstrations.storage import read_prompt, require_same_dishes
+from kitchen_prefs_robot.demonstrations.storage import read_origin, read_prompt
 from kitchen_prefs_robot.execution.conditions import Conditions
 from kitchen_prefs_robot.execution.looking import TrueEyes
 from kitchen_prefs_robot.scene import World, sample_scene
@@ -21,54 +22,99 @@ OTHER_SCENES = 100_000  # the scene of a demonstration, counted from the one tha
 ATTEMPTS, AGAIN = 3, 100_000  # demonstrations until one is understood, and how far apart they are
 
 
-def prompt_for(scene: int, preference: int, conditions: Conditions) -> np.ndarray:
+@dataclass(frozen=True)
+class Prompt:
+    """A demonstration as a policy reads it, and how well it was understood.
+
+    Attributes:
+        rows: The sets of all decisions, the chosen rows marked, (1664, 14) float32.
+        shown: How many demonstrations were shown until one was understood.
+        misread: Own category, and the one that it was taken for, of each dish that was misread.
+    """
+
+    rows: np.ndarray
+    shown: int = 1
+    misread: tuple[tuple[str, str], ...] = ()
+
+
+def prompt_for(scene: int, preference: int, conditions: Conditions) -> Prompt:
     """A demonstration of a preference, perceived as the scene is.
+
+    A person whom the cameras do not understand shows it again in another scene, twice at most.
 
     Args:
         scene: The seed of the scene that will be loaded; the demonstration is in another.
         preference: The number of the preference, see `demonstrations.preferences`.
         conditions: How the demonstration is perceived.
 
-    Returns:
-        The prompt, (1664, 14) float32.
-
     Raises:
-        ValueError: If what the cameras see is no demonstration.
+        ValueError: If none of the demonstrations is understood.
     """
     shown_in = OTHER_SCENES + scene
     if conditions.perception == "cameras":
-        light = (conditions.colours, conditions.lamp, conditions.depth_noise)
-        return _recorded(shown_in, preference, *light)
+        light = (conditions.colours, conditions.lamp)
+        return _recorded(
+            shown_in, preference, *light, conditions.depth_noise, conditions.camera_error
+        )
     shown = human_preference(preference)
     looked = TrueEyes(World(sample_scene(shown_in, shown.categories)), shown_in).look()
     start = DrawersState(tuple(dish.seen for dish in looked.dishes), None, None)
     session = DrawersSession("test", shown_in, "prompt", preference, shown, start)
-    return demonstrate(session).prompt
+    return Prompt(demonstrate(session).prompt)
 
 
-def prompt_from(demonstration: str, preference: int) -> np.ndarray:
+def prompt_from(demonstration: str, scene: int, preference: int) -> Prompt:
     """A recorded demonstration as a prompt.
 
     Args:
         demonstration: The folder of a data set, or FOLDER:EPISODE.
-        preference: It names the dishes of the scene, which the demonstration must show.
+        scene: The seed of the scene that will be loaded, which the demonstration must not show.
+        preference: The number of the preference, which the demonstration must show.
 
     Raises:
-        ValueError: If there is no such demonstration, or if it shows other dishes.
+        ValueError: If there is no such demonstration, or if it shows something else.
     """
-    folder, _, episode = demonstration.partition(":")
-    number = int(episode) if episode.isdigit() else 0
-    require_same_dishes(Path(folder), number, human_preference(preference).categories)
-    return read_prompt(Path(folder), number)
+    folder, episode = _folder_and_episode(demonstration)
+    origin = read_origin(folder, episode)
+    if origin.preference != preference:
+        raise ValueError(
+            f"Episode {episode} of {folder} shows preference {origin.preference}, not "
+            f"{preference}; give --preference={origin.preference}, or another episode."
+        )
+    if origin.scene == scene:
+        raise ValueError(
+            f"Episode {episode} of {folder} shows scene {scene} itself; give another --scene, or "
+            "another episode."
+        )
+    return Prompt(read_prompt(folder, episode), misread=origin.misread)
+
+
+def _folder_and_episode(demonstration: str) -> tuple[Path, int]:
+    folder, colon, episode = demonstration.rpartition(":")
+    if not colon:
+        return Path(demonstration), 0
+    if not folder or not (episode.isascii() and episode.isdecimal()):
+        raise ValueError(
+            f"A demonstration is FOLDER or FOLDER:EPISODE with a number from 0, unlike "
+            f"{demonstration!r}."
+        )
+    return Path(folder), int(episode)
 
 
 @cache  # a table prompts many variations with one demonstration; it has .1 MB
 def _recorded(
-    shown_in: int, preference: int, colours: Colours, lamp: float, depth_noise: float
-) -> np.ndarray:
-    """A person who was not understood shows it again in another scene."""
-    light = (colours, lamp, depth_noise)
+    shown_in: int,
+    preference: int,
+    colours: Colours,
+    lamp: float,
+    depth_noise: float,
+    camera_error: float,
+) -> Prompt:
+    """The first demonstration that is understood."""
+    seen_with = (colours, lamp, depth_noise, camera_error)
     for attempt in range(ATTEMPTS - 1):
         with suppress(ValueError):
-            return record(shown_in + attempt * AGAIN, preference, *light).prompt
-    return record(shown_in + (ATTEMPTS - 1) * AGAIN, preference, *light).prompt
+            shown = record(shown_in + attempt * AGAIN, preference, *seen_with)
+            return Prompt(shown.prompt, attempt + 1, shown.misread)
+    shown = record(shown_in + (ATTEMPTS - 1) * AGAIN, preference, *seen_with)
+    return Prompt(shown.prompt, ATTEMPTS, shown.misread)

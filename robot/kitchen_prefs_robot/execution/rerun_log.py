@@ -29,11 +29,12 @@ class RerunLog:
             self._recording.save(path)
 
     def look(self, decision: int, frame: Frame, detections: Sequence[Detection]) -> None:
-        """The front camera's picture and the clusters, before a decision."""
+        """The front camera's picture and the clusters, before a decision, which count from 1."""
         if self._recording is None:
             return
         self._recording.set_time("decision", sequence=decision)
         self._recording.log("cameras/front", self._rerun.Image(frame.colour))
+        self._recording.log("clusters", self._rerun.Clear(recursive=True))  # those that are gone
         for number, dish in enumerate(detections):
             points = self._rerun.Points3D(
                 dish.cloud.points, colors=cluster_colour(number), radii=0.003

@@ -1,16 +1,17 @@
 """A policy in scenes, from the first look to the last decision."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from kitchen_prefs.evaluation.rollouts import Policy
+from kitchen_prefs.metrics import Interval, mean_of_groups
 from kitchen_prefs_robot.demonstrations.preferences import human_preference
 from kitchen_prefs_robot.execution.conditions import Conditions
 from kitchen_prefs_robot.execution.episode import RobotEpisode
 from kitchen_prefs_robot.execution.outcomes import EpisodeOutcome, outcome_of
-from kitchen_prefs_robot.execution.prompts import prompt_for
+from kitchen_prefs_robot.execution.prompts import Prompt, prompt_for
 from kitchen_prefs_robot.execution.watching import NOBODY, Watcher
 from kitchen_prefs_robot.task.rollouts import TASK, policy_observation
 from kitchen_prefs_robot.task.rows import chosen_decision
@@ -42,7 +43,7 @@ def run_trial(
     policy: Policy,
     trial: Trial,
     conditions: Conditions,
-    prompt: np.ndarray | None = None,
+    prompt: Prompt | None = None,
     watcher: Watcher = NOBODY,
 ) -> EpisodeOutcome:
     """Let a policy load a scene as a demonstration shows.
@@ -51,11 +52,11 @@ def run_trial(
         policy: The policy, as `kitchen_prefs.evaluation.policy_loading.load_policy` loads it.
         trial: The scene, and the preference that is demonstrated.
         conditions: What is left to the robot.
-        prompt: The demonstration, (1664, 14); one in another scene by default.
+        prompt: The demonstration; one in another scene by default.
         watcher: Is told what happens.
 
     Raises:
-        ValueError: If the cameras see no dish, or the demonstration is none.
+        ValueError: If no demonstration is understood.
     """
     if prompt is None:
         prompt = prompt_for(trial.scene, trial.preference, conditions)
@@ -64,11 +65,13 @@ def run_trial(
         policy.reset()
         while not (episode.terminated or episode.truncated):
             watcher.look(episode)
-            decision = chosen_decision(episode.state, episode.rows, act(policy, episode, prompt))
+            decision = chosen_decision(
+                episode.state, episode.rows, act(policy, episode, prompt.rows)
+            )
             watcher.decide(episode, decision)
             episode.decide(decision)
         watcher.look(episode)
-        return outcome_of(episode)
+        return outcome_of(episode, prompt.shown, prompt.misread)
 
 
 def act(policy: Policy, episode: RobotEpisode, prompt: np.ndarray) -> Sequence[float]:
@@ -83,8 +86,16 @@ def observe_episode(episode: RobotEpisode, prompt: np.ndarray) -> dict[str, np.n
     return observation | {"environment_state": summary, "agent_pos": agent}
 
 
-def trials(scenes: int, preferences: int) -> Iterator[Trial]:
+def trials(scenes: Iterable[int], preferences: int) -> Iterator[Trial]:
     """Each scene with each preference."""
-    for scene in range(scenes):
+    for scene in scenes:
         for preference in range(preferences):
             yield Trial(scene, preference)
+
+
+def mean_right(outcomes: Mapping[Trial, EpisodeOutcome]) -> Interval:
+    """The mean share of dishes that are right, with the 95 % interval over scenes."""
+    of_scene: dict[int, list[float]] = {}
+    for trial, outcome in outcomes.items():
+        of_scene.setdefault(trial.scene, []).append(outcome.right)
+    return mean_of_groups(list(of_scene.values()))

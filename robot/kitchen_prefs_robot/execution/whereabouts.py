@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from kitchen_prefs_robot.perception.trials import SAME_DISH
 from kitchen_prefs_robot.scene import World
 from kitchen_prefs_robot.scene.layout import (
     CABINET_POSITION,
@@ -26,10 +27,19 @@ def is_on_table(world: World, number: int) -> bool:
     return drawer_of(world, number) is None and world.dish_pose(number)[0][2] > 0.0
 
 
-def nearest_on_table(world: World, place: np.ndarray) -> int:
-    """The dish on the table whose middle is nearest to a place, (3,) m in the base's frame."""
-    standing = [n for n in range(len(world.scene.dishes)) if is_on_table(world, n)]
-    return min(standing, key=lambda n: float(np.linalg.norm(world.dish_pose(n)[0] - place)))
+def nearest_on_table(world: World, place: np.ndarray) -> int | None:
+    """The dish on the table that was seen at a place, (3,) m in the base's frame.
+
+    Returns:
+        The number of the dish whose middle is nearest; None if none is within `SAME_DISH`.
+    """
+    ways = {
+        n: float(np.linalg.norm(world.dish_pose(n)[0] - place))
+        for n in range(len(world.scene.dishes))
+        if is_on_table(world, n)
+    }
+    nearest = min(ways, key=ways.__getitem__, default=None)
+    return nearest if nearest is not None and ways[nearest] <= SAME_DISH else None
 
 
 def highest(world: World) -> int:

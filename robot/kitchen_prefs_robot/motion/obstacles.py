@@ -1,8 +1,8 @@
 """Whether the arm, on a planned path, would strike itself, the table, the cabinet or a stand.
 
 The table's and the cabinet's places are known, as on a real robot. How far drawers are open, and
-where stands and dishes are, only the cameras can tell: openings are given, and where it is not
-given where the stands are, they are left out as the dishes are, whose points a grasp keeps clear of.
+where stands and dishes are, only the cameras can tell: openings are given; dishes, and stands whose
+places are not known, are left out, as a grasp keeps clear of the points that are seen of them.
 """
 
 from collections.abc import Mapping

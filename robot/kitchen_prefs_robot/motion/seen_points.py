@@ -7,6 +7,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from kitchen_prefs.rendering.tableware import surface
+from kitchen_prefs_robot.perception.cloud import Frame, deproject
 from kitchen_prefs_robot.scene import Pictures, World
 from kitchen_prefs_robot.scene.layout import COUNTER_X, COUNTER_Y
 from kitchen_prefs_robot.scene.tableware import SCALES, SIDES, real_extents
@@ -81,10 +82,6 @@ def _surface_points(world: World, number: int, rng: np.random.Generator) -> np.n
 
 def _camera_points(world: World, pictures: Pictures, camera: str) -> np.ndarray:
     """Where a camera's rays end, (H * W, 3) m in the base's frame."""
-    depth = pictures.depth(camera)
-    width, height = PICTURE_SIZE
-    rows, columns = np.mgrid[:height, :width]
-    pixels = np.stack([columns, rows, np.ones_like(rows)], axis=-1).reshape(-1, 3)
-    rays = pixels @ np.linalg.inv(world.intrinsics(width, height)).T
+    frame = Frame(*pictures.colour_and_depth(camera), world.intrinsics(*PICTURE_SIZE))
     position, rotation = world.camera_pose(camera)
-    return (depth.reshape(-1, 1) * rays) @ rotation.T + position
+    return deproject(frame).points @ rotation.T + position

@@ -4,6 +4,7 @@ depth_noise     what a depth camera gets wrong
 depth_filter    its images made smoother
 calibration     where a camera stands, from tags
 cameras         the three calibrated cameras of a world
+not_seen        what cannot be done without, and is not seen
 cloud           coloured points
 plane           the table
 drawer_opening  how far a drawer is open

@@ -22,6 +22,20 @@ def laboratory_poses() -> dict[str, np.ndarray]:
     return calibrate(World(sample_scene(0, dishes=())))
 
 
+def displaced_poses(error: float, seed: int) -> dict[str, np.ndarray]:
+    """The laboratory's poses, each camera's position off by a random error.
+
+    Args:
+        error: Standard deviation of each coordinate, m.
+        seed: Draws the errors.
+    """
+    rng = np.random.default_rng([seed, len("cameras")])
+    poses = {name: pose.copy() for name, pose in laboratory_poses().items()}
+    for pose in poses.values():
+        pose[:3, 3] += error * rng.standard_normal(3)
+    return poses
+
+
 def calibrate(world: World) -> dict[str, np.ndarray]:
     """Find where each camera stands, from the tags on the table alone.
 
@@ -82,7 +96,7 @@ class Cameras:
         """A picture with depth of each camera."""
         return {camera: self._take(camera) for camera in self._world.cameras}
 
-    def cloud(self, frames: dict[str, Frame]) -> Cloud:
+    def cloud(self, frames: Mapping[str, Frame]) -> Cloud:
         """All that the cameras see, as one cloud in the base's frame."""
         return joined(
             [

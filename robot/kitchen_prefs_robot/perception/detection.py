@@ -107,7 +107,7 @@ def perceive(cloud: Cloud, known: Sequence[KnownDish], seed: int = 0) -> Sight:
         seed: Of the random samples that find the table.
 
     Raises:
-        ValueError: If the cameras see no table, or not the front of a drawer.
+        NotSeenError: If the cameras see no table, or not the front of a drawer.
     """
     regions = cut_regions(cloud, np.random.default_rng(seed))
     largest = max(max(dish.extents) for dish in known)

@@ -3,6 +3,7 @@
 import numpy as np
 
 from kitchen_prefs_robot.perception.cloud import Cloud
+from kitchen_prefs_robot.perception.not_seen import NotSeenError
 from kitchen_prefs_robot.scene.layout import (
     BOARD,
     CABINET_SIZE,
@@ -27,7 +28,7 @@ def drawer_opening(cloud: Cloud, drawer: str) -> float:
         The opening in m.
 
     Raises:
-        ValueError: If the cameras do not see the drawer's front.
+        NotSeenError: If the cameras do not see the drawer's front.
     """
     x, y, z = cloud.points.T
     low = DRAWER_FLOOR[drawer]
@@ -36,7 +37,7 @@ def drawer_opening(cloud: Cloud, drawer: str) -> float:
     ahead = x[on_front & (x > -BIN) & (x < DRAWER_TRAVEL + 3 * BIN)]
     counts, edges = np.histogram(ahead, np.arange(-BIN, DRAWER_TRAVEL + 4 * BIN, BIN))
     if counts.max() < FEWEST_POINTS:
-        raise ValueError(
+        raise NotSeenError(
             f"The cameras do not see the front of the {drawer} drawer; clear the view."
         )
     peak = edges[counts.argmax()] + BIN / 2

@@ -4,6 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from kitchen_prefs_robot.perception.not_seen import NotSeenError
+
 TRIALS = 100  # half of the points lie on the table: a trial in eight hits it
 INLIER = 0.01  # m: twice the depth's standard deviation at a metre and more
 
@@ -36,10 +38,10 @@ def find_plane(points: np.ndarray, rng: np.random.Generator) -> Plane:
         The best trial's plane, fitted to all its inliers by least squares.
 
     Raises:
-        ValueError: If there are fewer than three points.
+        NotSeenError: If there are fewer than three points.
     """
     if len(points) < 3:
-        raise ValueError("The cameras see no table; check that they look at it and see depth.")
+        raise NotSeenError("The cameras see no table; check that they look at it and see depth.")
     samples = points[rng.integers(len(points), size=(TRIALS, 3))]  # (T, 3, 3)
     normals = np.cross(samples[:, 1] - samples[:, 0], samples[:, 2] - samples[:, 0])  # (T, 3)
     lengths = np.linalg.norm(normals, axis=1)

@@ -70,7 +70,7 @@ def cut_regions(cloud: Cloud, rng: np.random.Generator) -> Regions:
         rng: Draws the samples that find the table.
 
     Raises:
-        ValueError: If the cameras see no table, or not the front of a drawer.
+        NotSeenError: If the cameras see no table, or not the front of a drawer.
     """
     cabinet = Cloud(CABINET_ROTATION.inv().apply(cloud.points - CABINET_POSITION), cloud.colours)
     openings = {drawer: drawer_opening(cabinet, drawer) for drawer in DRAWERS}

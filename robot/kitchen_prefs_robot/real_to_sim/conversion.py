@@ -1,4 +1,4 @@
-"""One look as the state of the task: positions by the work areas, heights and sizes by table."""
+"""One look as the state of the task: positions by the counter's map, heights and sizes by table."""
 
 from collections.abc import Iterable, Mapping
 
@@ -7,7 +7,7 @@ import numpy as np
 from kitchen_prefs.simulation.layout import COUNTER_HEIGHT, EXTENTS
 from kitchen_prefs_robot.perception.detection import Detection
 from kitchen_prefs_robot.perception.regions import open_drawer
-from kitchen_prefs_robot.real_to_sim.work_areas import WorkArea
+from kitchen_prefs_robot.real_to_sim.work_area import WorkArea
 from kitchen_prefs_robot.task.rows import placed
 from kitchen_prefs_robot.task.state import DRAWERS, DrawersState, SeenDish
 
@@ -15,14 +15,14 @@ from kitchen_prefs_robot.task.state import DRAWERS, DrawersState, SeenDish
 def to_drawers_state(
     detections: Iterable[Detection],
     openings: Mapping[str, float],
-    work_areas: Mapping[str, WorkArea],
+    counter: WorkArea,
 ) -> DrawersState:
     """Convert what was seen.
 
     Args:
         detections: The dishes that were seen.
         openings: How far each drawer is open, m.
-        work_areas: As from `measure_work_areas`.
+        counter: Its map, as from `measure_counter`.
 
     Returns:
         The state in the kitchen's frame. A dish on the table, or on a stand, stands on the counter;
@@ -32,7 +32,7 @@ def to_drawers_state(
     """
     detections = list(detections)
     held = [nearest_category(found) for found in detections if found.place == "hand"]
-    seen = (_seen(found, work_areas["counter"]) for found in detections if found.place != "hand")
+    seen = (_seen(found, counter) for found in detections if found.place != "hand")
     return DrawersState(tuple(seen), open_drawer(openings), held[0] if held else None)
 
 

@@ -1,14 +1,13 @@
-"""Maps from the robot's base to the kitchen, one for each work area: counter, upper, lower.
+"""The map from the robot's base to the kitchen, of the work area where dishes stand: the counter.
 
-A map is the paper's: two scales and two shifts, by least squares from corresponding corners. The
-paper's formula has no rotation, so it needs axes that are parallel; this table's cabinet is turned
-by 45 degrees in the base's frame. So each area's corners are first turned by the angle between
-their sides and the kitchen's.
+It is the paper's: two scales and two shifts, by least squares from corresponding corners. The
+paper's formula has no rotation, so it needs axes that are parallel; this table's counter is turned
+by 90 degrees in the base's frame. So its corners are first turned by the angle between their sides
+and the kitchen's. The drawers need no map: a dish in one has the drop pose, as in the paper.
 
     base (x, y) -> turned (u, v) -> kitchen (scale_x u + shift_x, scale_y v + shift_y)
 """
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,15 +15,13 @@ from scipy.spatial.transform import Rotation
 
 from kitchen_prefs.simulation import layout as kitchen
 from kitchen_prefs_robot.scene import layout as table
-from kitchen_prefs_robot.task.rows import RACK_OF
 
-AREAS = ("counter", "upper", "lower")
 CORNER_NOISE = 0.003  # m, standard deviation of a corner that a person measures with the arm's tip
 
 
 @dataclass(frozen=True)
 class WorkArea:
-    """The map of one work area.
+    """The map of a work area.
 
     Attributes:
         yaw: Turns the base's axes to be parallel to the kitchen's, radians.
@@ -68,62 +65,35 @@ def fit_work_area(corners: np.ndarray, kitchen_corners: np.ndarray) -> WorkArea:
     return WorkArea(yaw, (scale_x, scale_y), (shift_x, shift_y), residual)
 
 
-def measure_work_areas(
-    noise: float = CORNER_NOISE,
-    seed: int = 0,
-    corners: Mapping[str, np.ndarray] | None = None,
-) -> dict[str, WorkArea]:
-    """Measure the three work areas, and fit their maps.
+def measure_counter(noise: float = CORNER_NOISE, seed: int = 0) -> WorkArea:
+    """Measure the counter's corners, and fit its map.
 
     Args:
         noise: Standard deviation of a measured corner's coordinates, m.
         seed: Draws the errors.
-        corners: Of each area in the base's frame, (4, 2) m, in the order of `table_corners`, which
-            are taken by default.
-
-    Returns:
-        The map of each area of AREAS.
     """
-    rng = np.random.default_rng(seed)
-    known, target = corners or table_corners(), kitchen_corners()
-    return {
-        area: fit_work_area(known[area] + noise * rng.standard_normal((4, 2)), target[area])
-        for area in AREAS
-    }
+    errors = noise * np.random.default_rng(seed).standard_normal((4, 2))
+    return fit_work_area(table_corners() + errors, kitchen_corners())
 
 
-def table_corners() -> dict[str, np.ndarray]:
-    """The true corners of the work areas, (4, 2) m each in the base's frame.
+def table_corners() -> np.ndarray:
+    """The counter's true corners, (4, 2) m in the base's frame.
 
-    The counter's as the robot sees them: near right, far right, far left, near left. An open
-    drawer's as seen from before it: front left, back left, back right, front right.
+    As the robot sees them: near right, far right, far left, near left.
     """
     (near, far), (right, left) = table.COUNTER_X, table.COUNTER_Y
-    depth, width, _ = table.DRAWER_INNER
-    front, half = table.DRAWER_TRAVEL, width / 2
-    inner = np.array(
-        [(front, -half, 0), (front - depth, -half, 0), (front - depth, half, 0), (front, half, 0)]
-    )
-    drawer = table.from_cabinet(inner)[:, :2]
-    counter = np.array([(near, right), (far, right), (far, left), (near, left)])
-    return {"counter": counter, "upper": drawer, "lower": drawer}
+    return np.array([(near, right), (far, right), (far, left), (near, left)])
 
 
-def kitchen_corners() -> dict[str, np.ndarray]:
-    """The corresponding corners in the kitchen, (4, 2) m each.
+def kitchen_corners() -> np.ndarray:
+    """The corresponding corners in the kitchen, (4, 2) m.
 
-    The counter is its part to the right of the sink, next to the dishwasher; the person stands
-    before it as the robot does. The racks are pulled out.
+    They are of the part of its counter to the right of the sink, next to the dishwasher; the person
+    stands before it as the robot does.
     """
     left = kitchen.SINK_CENTRE[0] + kitchen.SINK_SIZE[0] / 2
     right, (near, far) = kitchen.COUNTER_X[1], kitchen.COUNTER_Y
-    corners = {"counter": np.array([(right, near), (right, far), (left, far), (left, near)])}
-    for drawer, rack in RACK_OF.items():
-        x, y, _ = kitchen.RACK_CLOSED[rack]
-        half = np.array(kitchen.RACK_INNER) / 2
-        signs = np.array([(-1, -1), (-1, 1), (1, 1), (1, -1)])
-        corners[drawer] = np.array([x, y - kitchen.RACK_TRAVEL]) + half * signs
-    return corners
+    return np.array([(right, near), (right, far), (left, far), (left, near)])
 
 
 def _turned(points: np.ndarray, yaw: float) -> np.ndarray:

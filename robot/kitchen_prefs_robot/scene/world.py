@@ -76,7 +76,8 @@ class World:
     def intrinsics(self, width: int, height: int) -> np.ndarray:
         """The cameras' matrix, (3, 3), for pictures of that many pixels.
 
-        As in OpenCV, whole numbers are the middles of pixels.
+        The middle of the first pixel is (.5, .5). MuJoCo's optical axis meets the picture half a
+        pixel to the left of its middle and above it, as the tags show.
         """
         focal = height / 2 / np.tan(np.deg2rad(FIELD_OF_VIEW) / 2)
         return np.array([[focal, 0, (width - 1) / 2], [0, focal, (height - 1) / 2], [0, 0, 1.0]])

@@ -8,7 +8,7 @@ import pytest
 
 pytest.importorskip("gym_hil", reason="needs the extra `robot`")
 
-from kitchen_prefs.datasets.columns import fingerprint, read_tasks
+from kitchen_prefs.datasets.columns import fingerprint
 from kitchen_prefs_robot.demonstrations import verification
 from kitchen_prefs_robot.demonstrations.recording import HumanDemonstration
 from kitchen_prefs_robot.demonstrations.storage import write_demonstrations
@@ -34,7 +34,7 @@ def root(tmp_path_factory):
 @pytest.fixture
 def published(root, tmp_path, monkeypatch):
     """As if the data set of `root` were the published one."""
-    found = fingerprint(verification._read(root), read_tasks(root))
+    found = fingerprint(*verification._read(root))
     (tmp_path / "fingerprints.json").write_text(json.dumps({NAME: found}))
     monkeypatch.setattr(verification, "FINGERPRINTS", tmp_path / "fingerprints.json")
 

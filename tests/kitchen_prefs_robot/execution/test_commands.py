@@ -9,6 +9,9 @@ pytest.importorskip("gym_hil", reason="needs the extra robot")
 
 from kitchen_prefs.cli import command_line
 from kitchen_prefs_experiments.checkpoints import find_checkpoint
+from kitchen_prefs_robot.execution.outcome_files import OutcomeFile
+from kitchen_prefs_robot.execution.outcomes import EpisodeOutcome
+from kitchen_prefs_robot.execution.trials import Trial
 
 GIVEN = "--variation=perfect perception and grasps"
 
@@ -25,7 +28,7 @@ def test_a_run_leaves_a_log_of_every_decision(tmp_path):
     assert done.exit_code == 0, done.exception
     assert "4 of 4 dishes right after 12 decisions, 0 failed picks" in done.stdout
     lines = [json.loads(line) for line in (out / "decisions.jsonl").read_text().splitlines()]
-    assert [line["decision"] for line in lines] == list(range(12))
+    assert [line["decision"] for line in lines] == list(range(1, 13))
     assert lines[0]["chosen"] == "open the upper drawer"
     assert lines[1]["chosen"].startswith("pick the ")
     assert all(line["result"] == "done" and not line["refusal"] for line in lines)
@@ -34,8 +37,10 @@ def test_a_run_leaves_a_log_of_every_decision(tmp_path):
 
 @pytest.mark.slow
 def test_a_table_resumes_and_refuses_another_policys_outcomes(tmp_path):
-    options = ("--scenes=1", "--preferences=2", GIVEN, f"--out={tmp_path}")
-    assert run("table", *options).exit_code == 0
+    options = ("--scenes=1", "--first=3", "--preferences=2", GIVEN, f"--out={tmp_path}")
+    shown = run("table", *options)
+    assert shown.exit_code == 0, shown.exception
+    assert "2 of 2" in shown.stdout
     (file,) = tmp_path.glob("*.jsonl")
     lines = file.read_text().splitlines()
     assert len(lines) == 2
@@ -46,6 +51,23 @@ def test_a_table_resumes_and_refuses_another_policys_outcomes(tmp_path):
     file.write_text(lines[0].replace('"policy": "', '"policy": "x') + "\n")
     said = str(run("table", *options).exception)
     assert said == f"{file} has outcomes of another policy; give another --out."
+
+
+def test_outcomes_that_were_made_otherwise_are_refused(tmp_path):
+    file = OutcomeFile(tmp_path, "all real", "0123")
+    outcome = EpisodeOutcome(4, 1.0, 1.0, True, 12, 0, 0, 0, 1, 0, "", {}, 90.0)
+    file.add(Trial(1000, 2), outcome)
+    assert file.read() == {Trial(1000, 2): outcome}
+    line = file.path.read_text()
+    for changed, sentence in (
+        (line.replace('"lamp": 0.1', '"lamp": 0.3'), "outcomes of other conditions"),
+        (line.replace('"counting": 2', '"counting": 1'), "were counted in another way"),
+        (line.replace('"trial"', '"run"'), "lines that are no outcomes"),
+        ("[1, 2]\n", "lines that are no outcomes"),
+    ):
+        file.path.write_text(changed)
+        with pytest.raises(ValueError, match=f"^{file.path} has .*{sentence}; give another --out"):
+            file.read()
 
 
 def never(*_):

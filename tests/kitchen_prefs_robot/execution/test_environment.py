@@ -9,7 +9,9 @@ pytest.importorskip("gym_hil", reason="needs the extra robot")
 
 import kitchen_prefs_robot  # noqa: F401  registers the environment
 from kitchen_prefs import instances
+from kitchen_prefs.rendering.opengl import NoOpenGLError
 from kitchen_prefs_robot.execution.conditions import Conditions
+from kitchen_prefs_robot.execution.prompts import prompt_for
 from kitchen_prefs_robot.task.decisions import choices
 from kitchen_prefs_robot.task.expert import choose
 
@@ -60,6 +62,34 @@ def test_a_seed_is_a_trial_and_a_prompt_shows_another_scene(env):
 def test_nothing_can_be_asked_before_a_reset(env):
     with pytest.raises(ResetNeeded):
         env.step(np.zeros(7, np.float32))
+
+
+def test_a_preference_that_there_is_not_is_named():
+    with pytest.raises(ValueError, match="no preference 9"):
+        gymnasium.make("kitchen_prefs/Drawers-v0", task_id=9, disable_env_checker=True)
+
+
+def test_one_step_is_seen_by_the_cameras(monkeypatch):
+    """The arm does not move here, and the prompt is drawn without cameras."""
+    monkeypatch.setattr(
+        "kitchen_prefs_robot.execution.environment.prompt_for",
+        lambda scene, preference, _: prompt_for(scene, preference, GIVEN),
+    )
+    seen = Conditions(grasps="truth")
+    env = gymnasium.make("kitchen_prefs/Drawers-v0", conditions=seen, disable_env_checker=True)
+    with env:
+        try:
+            before, _ = env.reset(seed=6)
+        except NoOpenGLError:
+            pytest.skip("needs EGL")
+        after, _, terminated, truncated, info = env.step(experts_action(env.unwrapped))
+        assert env.observation_space.contains(after)
+    assert info == {"is_success": False, "refusal": "", "result": "done"}
+    assert not terminated
+    assert not truncated
+    for camera, picture in after["pixels"].items():
+        assert picture.std() > 10, camera
+        assert not np.array_equal(picture, before["pixels"][camera]), camera  # a drawer is open
 
 
 @pytest.mark.slow

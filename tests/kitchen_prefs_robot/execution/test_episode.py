@@ -7,10 +7,11 @@ pytest.importorskip("gym_hil", reason="needs the extra robot")
 from kitchen_prefs_robot.demonstrations.preferences import human_preference
 from kitchen_prefs_robot.execution.conditions import Conditions
 from kitchen_prefs_robot.execution.episode import RobotEpisode
-from kitchen_prefs_robot.execution.looking import Look
-from kitchen_prefs_robot.execution.outcomes import mean_right, outcome_of
+from kitchen_prefs_robot.execution.looking import NOTHING_SEEN, TrueEyes
+from kitchen_prefs_robot.execution.outcomes import outcome_of
 from kitchen_prefs_robot.execution.whereabouts import drawer_of
 from kitchen_prefs_robot.motion.outcomes import Result
+from kitchen_prefs_robot.perception.not_seen import NotSeenError
 from kitchen_prefs_robot.task.decisions import Pick, Place, Toggle
 from kitchen_prefs_robot.task.expert import choose
 
@@ -94,16 +95,6 @@ def test_a_pick_that_is_led_astray_is_seen_and_tried_again():
         assert outcome_of(episode).failed_picks == sum(step.failed for step in steps)
 
 
-def test_a_mean_has_an_interval():
-    with RobotEpisode(3, human_preference(0), GIVEN) as episode:
-        nothing = outcome_of(episode)
-        follow_expert(episode)
-        everything = outcome_of(episode)
-    interval = mean_right([nothing, everything] * 10)
-    assert 0 < interval.low < interval.mean == 0.5 < interval.high < 1
-    assert mean_right([everything] * 3).low == 1.0
-
-
 def test_a_drawer_is_open_or_closed_and_the_other_waits():
     with RobotEpisode(3, human_preference(0), GIVEN) as episode:
         episode.decide(Toggle("upper"))
@@ -114,29 +105,50 @@ def test_a_drawer_is_open_or_closed_and_the_other_waits():
         assert episode.state.opened is None
 
 
-def test_a_drawer_that_jams_is_what_its_dishes_fail_by():
-    with RobotEpisode(3, human_preference(0), Conditions(perception="truth")) as episode:
-        episode.world.model.joint("lower").range[:] = (0.0, 0.02)
-        assert episode.decide(Toggle("lower")).result is Result.JAMMED
-        assert episode.state.opened is None
-        assert outcome_of(episode).causes == {"drawer": 4}
-
-
-class Blind:
-    """Looks at nothing, and remembers that it was closed."""
+class Failing:
+    """Looks with an error, and remembers that it was closed."""
 
     closed = False
 
+    def __init__(self, error):
+        self.error = error
+
     def look(self):
-        return Look((), {"upper": 0.0, "lower": 0.0})
+        raise self.error
 
     def close(self):
         self.closed = True
 
 
-def test_a_scene_without_a_dish_is_one_sentence_and_the_cameras_are_released(monkeypatch):
-    blind = Blind()
-    monkeypatch.setattr("kitchen_prefs_robot.execution.episode.make_eyes", lambda *_: blind)
-    with pytest.raises(ValueError, match=r"^The cameras see no dish in scene 3; .*view\.$"):
+def test_an_episode_without_a_view_ends_by_perception(monkeypatch):
+    eyes = Failing(NotSeenError("The cameras see no table."))
+    monkeypatch.setattr("kitchen_prefs_robot.execution.episode.make_eyes", lambda *_: eyes)
+    with RobotEpisode(3, human_preference(0), GIVEN) as episode:
+        assert episode.truncated
+        assert not episode.terminated
+        outcome = outcome_of(episode)
+    assert (outcome.blind, outcome.causes) == ("The cameras see no table.", {"perception": 4})
+    assert eyes.closed
+
+
+def test_a_look_that_fails_later_ends_the_episode_where_it_is(monkeypatch):
+    with RobotEpisode(3, human_preference(0), GIVEN) as episode:
+        monkeypatch.setattr(TrueEyes, "look", Failing(NotSeenError("No front.")).look)
+        step = episode.decide(Toggle("upper"))
+        assert step.result is Result.DONE
+        assert episode.truncated
+
+
+def test_a_scene_without_a_dish_is_one_sentence(monkeypatch):
+    monkeypatch.setattr(TrueEyes, "look", lambda _: NOTHING_SEEN)
+    with RobotEpisode(3, human_preference(0), GIVEN) as episode:
+        assert episode.blind == "The cameras see no dish in scene 3; clear the view."
+        assert outcome_of(episode).causes == {"perception": 4}
+
+
+def test_the_cameras_are_released_when_the_first_look_fails(monkeypatch):
+    eyes = Failing(RuntimeError())
+    monkeypatch.setattr("kitchen_prefs_robot.execution.episode.make_eyes", lambda *_: eyes)
+    with pytest.raises(RuntimeError):
         RobotEpisode(3, human_preference(0), GIVEN)
-    assert blind.closed
+    assert eyes.closed

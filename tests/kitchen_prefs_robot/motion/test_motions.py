@@ -5,7 +5,15 @@ import pytest
 
 pytest.importorskip("mink", reason="needs the extra `robot`")
 
-from kitchen_prefs_robot.motion import Result, close_drawer, drop, open_drawer, pick, put_back
+from kitchen_prefs_robot.motion import (
+    Furniture,
+    Result,
+    close_drawer,
+    drop,
+    open_drawer,
+    pick,
+    put_back,
+)
 from kitchen_prefs_robot.motion.seen_points import exact_points, seen_points
 from kitchen_prefs_robot.scene import World, sample_scene
 from kitchen_prefs_robot.scene.arm import HOME
@@ -50,6 +58,8 @@ def test_a_dish_for_a_closed_drawer_is_put_back():
     time = world.data.time
     assert drop(world, "upper", picked).result is Result.NOT_OPEN
     assert world.data.time == time
+    half_open = Furniture({"upper": 0.2, "lower": 0.0}, stands=False)
+    assert drop(world, "upper", picked, furniture=half_open).result is Result.NOT_OPEN
     assert put_back(world, picked).succeeded
     assert world.dish_pose(0)[0] == pytest.approx(before, abs=0.02)
     assert at_home(world)

@@ -4,9 +4,8 @@ import pytest
 pytest.importorskip("fast_simplification", reason="needs the extra `robot`")
 
 from kitchen_prefs.simulation import layout
-from kitchen_prefs_robot.real_to_sim import measure_work_areas
-from kitchen_prefs_robot.real_to_sim.work_areas import (
-    AREAS,
+from kitchen_prefs_robot.real_to_sim import measure_counter
+from kitchen_prefs_robot.real_to_sim.work_area import (
     fit_work_area,
     kitchen_corners,
     table_corners,
@@ -32,33 +31,20 @@ def test_an_area_that_is_turned_is_turned_back(yaw):
     assert np.cos(area.yaw + yaw) == pytest.approx(1.0)
 
 
-@pytest.mark.parametrize("area", AREAS)
-def test_exact_corners_fall_on_the_kitchens(area):
-    fitted = measure_work_areas(noise=0.0)[area]
+def test_exact_corners_fall_on_the_kitchens():
+    fitted = measure_counter(noise=0.0)
     assert fitted.residual < 1e-6
-    assert fitted.to_kitchen(table_corners()[area]) == pytest.approx(
-        kitchen_corners()[area], abs=1e-6
-    )
+    assert fitted.to_kitchen(table_corners()) == pytest.approx(kitchen_corners(), abs=1e-6)
     assert min(fitted.scale) > 0  # nothing is mirrored
 
 
 def test_measured_corners_leave_a_residual_of_their_error_times_the_scale():
-    residuals = {area: [] for area in AREAS}
-    for seed in range(30):
-        for area, fitted in measure_work_areas(noise=0.003, seed=seed).items():
-            residuals[area].append(fitted.residual)
-    assert 0.003 < np.mean(residuals["upper"]) < 0.006
-    assert 0.005 < np.mean(residuals["counter"]) < 0.015
+    residuals = [measure_counter(noise=0.003, seed=seed).residual for seed in range(30)]
+    assert 0.005 < np.mean(residuals) < 0.015
 
 
 def test_the_counters_corners_are_where_dishes_can_stand():
-    x, y = kitchen_corners()["counter"].T
+    x, y = kitchen_corners().T
     assert x.min() >= layout.SINK_CENTRE[0] + layout.SINK_SIZE[0] / 2
     assert x.max() <= layout.COUNTER_X[1]
     assert (y.min(), y.max()) == layout.COUNTER_Y
-
-
-def test_other_corners_can_be_given():
-    moved = {area: corners + 1.0 for area, corners in table_corners().items()}
-    fitted = measure_work_areas(noise=0.0, corners=moved)["upper"]
-    assert fitted.to_kitchen(moved["upper"][0]) == pytest.approx(kitchen_corners()["upper"][0])
