@@ -13,7 +13,8 @@ import numpy as np
 
 from kitchen_prefs import instances
 from kitchen_prefs.datasets.columns import SETS, fingerprint, flat_numbers, read_tasks
-from kitchen_prefs_robot.demonstrations.storage import COLUMNS, damage_told, read_frames
+from kitchen_prefs_robot.demonstrations.loading import damage_told, read_frames
+from kitchen_prefs_robot.demonstrations.storage import COLUMNS
 
 FINGERPRINTS = Path(__file__).with_name("fingerprints.json")
 WIDTHS = {SETS: (instances.CAPACITY, instances.COLUMNS), "action": (7,)}

@@ -4,6 +4,7 @@ conditions        what is real and what is given: perception, grasps, colours, l
 looking           one look at the table, by the cameras or by what is true
 whereabouts       where the dishes truly are
 hands             pick, drop, open and close, by the arm or by an invisible hand
+step              one decision and what came of it
 episode           one scene loaded decision by decision
 outcomes          what came of it
 causes            what each dish that is not right failed by

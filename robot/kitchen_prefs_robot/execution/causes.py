@@ -10,7 +10,8 @@ decision        the policy decided otherwise than the person
 from collections.abc import Iterable
 from itertools import chain
 
-from kitchen_prefs_robot.execution.episode import RobotEpisode, Step
+from kitchen_prefs_robot.execution.episode import RobotEpisode
+from kitchen_prefs_robot.execution.step import Step
 from kitchen_prefs_robot.execution.whereabouts import drawer_of, is_on_table
 from kitchen_prefs_robot.motion.outcomes import Result
 from kitchen_prefs_robot.task.decisions import Place, Toggle

@@ -19,9 +19,10 @@ import numpy as np
 from PIL import Image
 
 from kitchen_prefs.utils.files import write_json
-from kitchen_prefs_robot.execution.episode import RobotEpisode, Step
+from kitchen_prefs_robot.execution.episode import RobotEpisode
 from kitchen_prefs_robot.execution.outcomes import EpisodeOutcome
 from kitchen_prefs_robot.execution.rerun_log import RerunLog
+from kitchen_prefs_robot.execution.step import Step
 from kitchen_prefs_robot.execution.video import Video
 from kitchen_prefs_robot.execution.watching import Watcher
 from kitchen_prefs_robot.perception.cameras import laboratory_poses

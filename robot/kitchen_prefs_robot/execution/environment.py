@@ -10,9 +10,10 @@ from gymnasium.spaces import Box, Dict
 from kitchen_prefs.envs.spaces import action_space, observation_space
 from kitchen_prefs_robot.demonstrations.preferences import HUMAN_PREFERENCES, human_preference
 from kitchen_prefs_robot.execution.conditions import Conditions
-from kitchen_prefs_robot.execution.episode import RobotEpisode, Step
+from kitchen_prefs_robot.execution.episode import RobotEpisode
 from kitchen_prefs_robot.execution.outcomes import outcome_of
 from kitchen_prefs_robot.execution.prompts import prompt_for
+from kitchen_prefs_robot.execution.step import Step
 from kitchen_prefs_robot.execution.trials import observe_episode, trials
 from kitchen_prefs_robot.scene import Pictures
 from kitchen_prefs_robot.scene.views import CAMERAS, PICTURE_SIZE, VISITOR

@@ -1,6 +1,5 @@
 """One scene, loaded decision by decision: the robot looks, somebody decides, the robot executes."""
 
-from dataclasses import dataclass
 from types import TracebackType
 from typing import Self
 
@@ -9,6 +8,7 @@ import numpy as np
 from kitchen_prefs_robot.execution.conditions import REAL, Conditions
 from kitchen_prefs_robot.execution.hands import ArmHand, Hand, InvisibleHand
 from kitchen_prefs_robot.execution.looking import NOTHING_SEEN, TableDish, make_eyes
+from kitchen_prefs_robot.execution.step import Step
 from kitchen_prefs_robot.execution.whereabouts import nearest_on_table
 from kitchen_prefs_robot.motion.moves import OnFrame
 from kitchen_prefs_robot.motion.outcomes import Result
@@ -26,33 +26,6 @@ from kitchen_prefs_robot.task.preferences import DrawerPreference
 from kitchen_prefs_robot.task.rows import observe, placed
 from kitchen_prefs_robot.task.simulator import LIMIT_FACTOR
 from kitchen_prefs_robot.task.state import DrawersState, SeenDish
-
-
-@dataclass(frozen=True)
-class Step:
-    """One decision and what came of it.
-
-    Attributes:
-        state: What was known before it.
-        decision: The decision; a dish has its number in that state.
-        refusal: Why the rules of the drawers do not allow it, or an empty string.
-        result: How the motion ended; None where it was refused.
-        seen_as: The category that its dish was taken for; None if it is about no dish.
-        dish: The true number of that dish: the one in hand or, after a pick that failed, the one
-            that was reached for; None where there is none, or the decision was refused.
-    """
-
-    state: DrawersState
-    decision: Decision
-    refusal: str
-    result: Result | None
-    seen_as: str | None
-    dish: int | None
-
-    @property
-    def failed(self) -> bool:
-        """Whether a motion was tried and did not do what it should."""
-        return self.result not in (None, Result.DONE)
 
 
 class RobotEpisode:

@@ -5,7 +5,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from kitchen_prefs_robot.execution.causes import cause_of
-from kitchen_prefs_robot.execution.episode import RobotEpisode, Step
+from kitchen_prefs_robot.execution.episode import RobotEpisode
+from kitchen_prefs_robot.execution.step import Step
 from kitchen_prefs_robot.execution.whereabouts import drawer_of
 from kitchen_prefs_robot.scene.layout import DRAWERS
 from kitchen_prefs_robot.task.decisions import Pick, Place

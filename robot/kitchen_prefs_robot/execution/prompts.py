@@ -7,9 +7,9 @@ from pathlib import Path
 
 import numpy as np
 
+from kitchen_prefs_robot.demonstrations.loading import read_origin, read_prompt
 from kitchen_prefs_robot.demonstrations.preferences import human_preference
 from kitchen_prefs_robot.demonstrations.recording import record
-from kitchen_prefs_robot.demonstrations.storage import read_origin, read_prompt
 from kitchen_prefs_robot.execution.conditions import Conditions
 from kitchen_prefs_robot.execution.looking import TrueEyes
 from kitchen_prefs_robot.scene import World, sample_scene

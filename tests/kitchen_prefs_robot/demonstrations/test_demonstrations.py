@@ -7,16 +7,11 @@ pytest.importorskip("gym_hil", reason="needs the extra `robot`")
 
 from kitchen_prefs.instances import CHOSEN, IS_PLACE, POSITION, unpad
 from kitchen_prefs.rendering.opengl import NoOpenGLError
+from kitchen_prefs_robot.demonstrations.loading import Origin, read_origin, read_prompt
 from kitchen_prefs_robot.demonstrations.person import Person
 from kitchen_prefs_robot.demonstrations.preferences import HUMAN_PREFERENCES
 from kitchen_prefs_robot.demonstrations.recording import record
-from kitchen_prefs_robot.demonstrations.storage import (
-    REPO_ID,
-    Origin,
-    read_origin,
-    read_prompt,
-    write_demonstrations,
-)
+from kitchen_prefs_robot.demonstrations.storage import REPO_ID, write_demonstrations
 from kitchen_prefs_robot.scene import World, sample_scene
 from kitchen_prefs_robot.scene.layout import (
     CABINET_POSITION,
