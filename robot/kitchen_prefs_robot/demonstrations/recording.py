@@ -1,5 +1,6 @@
 """One demonstration: a person acts, the cameras look once a decision, perception does the rest."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -96,10 +97,8 @@ def record(
     sets = tuple(observe(state, step) for step, state in enumerate(states))
     pairs = list(zip(states, decisions, strict=True))
     chosen = tuple(choices(state).index(decision) for state, decision in pairs)
-    seen = [_category(state, decision) for state, decision in pairs]
-    own = [_own_category(decision, held[step:]) for step, decision in enumerate(decisions)]
+    taken_for = tuple(_taken_for(*pair, held[step:]) for step, pair in enumerate(pairs))
     by_camera = {camera: np.stack([p[camera] for p in pictures]) for camera in world.cameras}
-    taken_for = tuple(zip(seen, own, strict=True))
     return HumanDemonstration(scene, preference, by_camera, sets, chosen, taken_for)
 
 
@@ -131,15 +130,18 @@ def _understand(sights: list[Sight], scene: int) -> tuple[list[DrawersState], li
     return states, decisions
 
 
-def _category(state: DrawersState, decision: Decision) -> str | None:
-    """The category that the dish of a decision is taken for."""
-    if isinstance(decision, Pick):
-        return state.dishes[decision.dish].category
-    return state.in_hand if isinstance(decision, Place) else None
+def _taken_for(
+    state: DrawersState, decision: Decision, held: Sequence[str | None]
+) -> tuple[str | None, str | None]:
+    """The category that the dish of a decision is taken for, and its own.
 
-
-def _own_category(decision: Decision, held: list[str | None]) -> str | None:
-    """The category of the dish of a decision, from what the hand holds before each from it on."""
+    Args:
+        state: What was known before the decision.
+        decision: The decision.
+        held: The category in the person's hand, before the decision and before each after it.
+    """
     if isinstance(decision, Pick):
-        return held[1]
-    return held[0] if isinstance(decision, Place) else None
+        return state.dishes[decision.dish].category, held[1]
+    if isinstance(decision, Place):
+        return state.in_hand, held[0]
+    return None, None

@@ -1,7 +1,7 @@
 """What a dish that is not right failed by: the last thing that was done with it says it.
 
 perception      it was taken for another category, or not seen
-demonstration   its category was misread in the demonstration that the policy was prompted with
+demonstration   its category was misread in the demonstration, or no demonstration was understood
 grasp           the hand missed it, lost it, or knocked it over
 drawer          its drawer did not open
 decision        the policy decided otherwise than the person

@@ -6,11 +6,11 @@ from typing import Literal, get_args
 from kitchen_prefs.utils.suggestions import suggest
 from kitchen_prefs_robot.scene.tableware import Colours
 
-Perception = Literal["cameras", "truth"]
-Grasps = Literal["arm", "truth"]
+PerceivedBy = Literal["cameras", "truth"]
+GraspedBy = Literal["arm", "truth"]
 CHOICES = {
-    "perception": get_args(Perception),
-    "grasps": get_args(Grasps),
+    "perception": get_args(PerceivedBy),
+    "grasps": get_args(GraspedBy),
     "colours": get_args(Colours),
 }
 
@@ -34,8 +34,8 @@ class Conditions:
         ValueError: If perception, grasps or colours are none of those.
     """
 
-    perception: Perception = "cameras"
-    grasps: Grasps = "arm"
+    perception: PerceivedBy = "cameras"
+    grasps: GraspedBy = "arm"
     colours: Colours = "distinct"
     lamp: float = 0.1
     depth_noise: float = 1.0

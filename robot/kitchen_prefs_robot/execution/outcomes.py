@@ -92,6 +92,25 @@ def outcome_of(
     )
 
 
+def outcome_without_prompt(dishes: int, shown: int) -> EpisodeOutcome:
+    """The outcome where none of some demonstrations was understood: nothing is done."""
+    return EpisodeOutcome(
+        dishes=dishes,
+        right=0.0,
+        in_drawer=0.0,
+        closed=False,
+        decisions=0,
+        refused=0,
+        failed_picks=0,
+        misread=0,
+        shown=shown,
+        misread_when_shown=0,
+        blind="",
+        causes={"demonstration": dishes},
+        seconds=0.0,
+    )
+
+
 def placements(steps: Sequence[Step], lies_in: Sequence[str | None]) -> list[tuple[int, str]]:
     """The dishes that lie where they were dropped, in the order in which they came there.
 

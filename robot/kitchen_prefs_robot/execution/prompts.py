@@ -1,6 +1,5 @@
 """What the robot is prompted with: a person's demonstration in another scene."""
 
-from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -37,6 +36,10 @@ class Prompt:
     misread: tuple[tuple[str, str], ...] = ()
 
 
+class NotUnderstoodError(ValueError):
+    """None of a person's demonstrations was understood."""
+
+
 def prompt_for(scene: int, preference: int, conditions: Conditions) -> Prompt:
     """A demonstration of a preference, perceived as the scene is.
 
@@ -48,7 +51,7 @@ def prompt_for(scene: int, preference: int, conditions: Conditions) -> Prompt:
         conditions: How the demonstration is perceived.
 
     Raises:
-        ValueError: If none of the demonstrations is understood.
+        NotUnderstoodError: If none of the demonstrations is understood.
     """
     shown_in = OTHER_SCENES + scene
     if conditions.perception == "cameras":
@@ -112,9 +115,14 @@ def _recorded(
 ) -> Prompt:
     """The first demonstration that is understood."""
     seen_with = (colours, lamp, depth_noise, camera_error)
-    for attempt in range(ATTEMPTS - 1):
-        with suppress(ValueError):
+    reason = ""
+    for attempt in range(ATTEMPTS):
+        try:
             shown = record(shown_in + attempt * AGAIN, preference, *seen_with)
+        except ValueError as error:
+            reason = str(error)
+        else:
             return Prompt(shown.prompt, attempt + 1, shown.misread)
-    shown = record(shown_in + (ATTEMPTS - 1) * AGAIN, preference, *seen_with)
-    return Prompt(shown.prompt, ATTEMPTS, shown.misread)
+    raise NotUnderstoodError(
+        f"None of {ATTEMPTS} demonstrations was understood; give another --scene. {reason}"
+    )

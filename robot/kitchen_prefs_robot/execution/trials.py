@@ -10,8 +10,12 @@ from kitchen_prefs.metrics import Interval, mean_of_groups
 from kitchen_prefs_robot.demonstrations.preferences import human_preference
 from kitchen_prefs_robot.execution.conditions import Conditions
 from kitchen_prefs_robot.execution.episode import RobotEpisode
-from kitchen_prefs_robot.execution.outcomes import EpisodeOutcome, outcome_of
-from kitchen_prefs_robot.execution.prompts import Prompt, prompt_for
+from kitchen_prefs_robot.execution.outcomes import (
+    EpisodeOutcome,
+    outcome_of,
+    outcome_without_prompt,
+)
+from kitchen_prefs_robot.execution.prompts import ATTEMPTS, NotUnderstoodError, Prompt, prompt_for
 from kitchen_prefs_robot.execution.watching import NOBODY, Watcher
 from kitchen_prefs_robot.task.rollouts import TASK, policy_observation
 from kitchen_prefs_robot.task.rows import chosen_decision
@@ -55,12 +59,15 @@ def run_trial(
         prompt: The demonstration; one in another scene by default.
         watcher: Is told what happens.
 
-    Raises:
-        ValueError: If no demonstration is understood.
+    Returns:
+        The outcome; where no demonstration is understood, nothing is done.
     """
-    if prompt is None:
-        prompt = prompt_for(trial.scene, trial.preference, conditions)
     wanted = human_preference(trial.preference)
+    if prompt is None:
+        try:
+            prompt = prompt_for(trial.scene, trial.preference, conditions)
+        except NotUnderstoodError:
+            return outcome_without_prompt(len(wanted.categories), shown=ATTEMPTS)
     with RobotEpisode(trial.scene, wanted, conditions, watcher.frame) as episode:
         policy.reset()
         while not (episode.terminated or episode.truncated):

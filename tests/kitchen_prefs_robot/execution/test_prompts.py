@@ -9,7 +9,8 @@ pytest.importorskip("gym_hil", reason="needs the extra robot")
 from kitchen_prefs_robot.demonstrations.recording import HumanDemonstration
 from kitchen_prefs_robot.execution import prompts
 from kitchen_prefs_robot.execution.conditions import Conditions
-from kitchen_prefs_robot.execution.prompts import prompt_for, prompt_from
+from kitchen_prefs_robot.execution.prompts import NotUnderstoodError, prompt_for, prompt_from
+from kitchen_prefs_robot.execution.trials import Trial, run_trial
 from kitchen_prefs_robot.task.demonstrations import demonstrate
 from kitchen_prefs_robot.task.sessions import make_session
 
@@ -67,3 +68,14 @@ def test_a_person_who_is_not_understood_shows_it_again(monkeypatch):
     assert (prompt.shown, prompt.misread) == (3, (("cup", "small plate"),))
     conditions = ("distinct", 0.123, 1.0, 0.004)
     assert seen_with == [(scene, *conditions) for scene in (100_007, 200_007, 300_007)]
+
+
+def test_a_trial_in_which_nothing_is_understood_fails_by_the_demonstration(monkeypatch):
+    def record(*_):
+        raise ValueError("dishes touch")
+
+    monkeypatch.setattr(prompts, "record", record)
+    outcome = run_trial(None, Trial(7, 0), Conditions(lamp=0.124))
+    assert (outcome.right, outcome.shown, outcome.causes) == (0.0, 3, {"demonstration": 4})
+    with pytest.raises(NotUnderstoodError, match=r"give another --scene\. dishes touch$"):
+        prompt_for(7, 0, Conditions(lamp=0.124))
