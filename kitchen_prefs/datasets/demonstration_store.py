@@ -83,6 +83,12 @@ class DemonstrationStore:
             np.unique(np.concatenate([piece.places for piece in pieces]), axis=0),
         )
 
+    def chosen(self) -> Self:
+        """The same demonstrations with only the chosen row of each decision."""
+        kept = [rows[rows[:, -1] > 0] for rows in self._episodes]
+        lengths = np.array([len(rows) for rows in kept])
+        return type(self)(np.concatenate(kept), lengths, self.preference, self.places)
+
     def draw(self, preference: int, excluded: np.ndarray, generator: np.random.Generator) -> int:
         """Draw an episode of a preference.
 

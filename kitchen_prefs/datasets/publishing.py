@@ -49,6 +49,6 @@ def write_cards(cards: Path) -> None:
 
 
 def published_cards(cards: Path) -> dict[str, str]:
-    """The card of each published data set that was recorded, by name, from its facts."""
+    """The card of each published data set, by name, from its recorded facts."""
     facts = json.loads((cards / FACTS).read_text())
-    return {name: card(content_of(name), facts[name]) for name in facts}
+    return {name: card(content_of(name), facts[name]) for name in dataset_names()}

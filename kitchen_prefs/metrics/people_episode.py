@@ -1,9 +1,7 @@
 """The facts of one finished episode of the second tier, and its metrics."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from dataclasses import dataclass
-
-import numpy as np
 
 
 @dataclass(frozen=True)
@@ -114,16 +112,6 @@ def failure_modes(episode: PeopleEpisode) -> dict[str, int]:
         "refused decision": refused_decisions(episode),
         "ran out of decisions": left_open(episode),
     }
-
-
-def headline(episodes: Iterable[PeopleEpisode]) -> float:
-    """H = (Where + Turn) / 2, each its mean over the episodes that have it.
-
-    Turn counts 0 where no episode has it, as of a policy that never pulls a rack out.
-    """
-    every = list(episodes)
-    turns = [value for one in every if (value := turn(one)) is not None]
-    return float((np.mean([where(one) for one in every]) + np.mean(turns or [0.0])) / 2)
 
 
 def _share(counted: tuple[int, int]) -> float | None:

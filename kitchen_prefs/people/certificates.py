@@ -45,11 +45,12 @@ def certificate(
 
 def is_certified(posterior: Posterior, dishes: DescribedDishes, table: PlacementTable) -> bool:
     """Whether the certificate holds; what takes longest is computed only where the rest is sure."""
-    return (
-        _sure_of_ranks(posterior, dishes) >= SURE
-        and float(_sure_of_zones(posterior, dishes).mean()) >= SURE
-        and certificate(posterior, dishes, table).holds
-    )
+    if _sure_of_ranks(posterior, dishes) < SURE:
+        return False
+    zones = _sure_of_zones(posterior, dishes)  # (m,)
+    if zones.mean() < SURE:
+        return False
+    return float((zones * _sure_of_overflow(posterior, dishes, table)).mean()) >= SURE
 
 
 def _sure_of_ranks(posterior: Posterior, dishes: DescribedDishes) -> float:

@@ -11,6 +11,7 @@ bayes            the exact reader of the grammar
 from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -40,7 +41,6 @@ class Shown:
         times: When each was picked in its demonstration, from 0 to 1, (n,) float.
         first: The rack that was loaded first, most often.
         evidence: What each demonstration says to who knows the grammar.
-        slips: The share of dishes that the user puts elsewhere by mistake, as far as is seen.
     """
 
     dishes: DescribedDishes
@@ -48,18 +48,27 @@ class Shown:
     times: np.ndarray
     first: str
     evidence: tuple[Evidence, ...]
-    slips: float
+
+    @cached_property
+    def slips(self) -> float:
+        """The share of dishes that the user puts elsewhere by mistake, as far as is seen.
+
+        A user whom no rules explain is taken to slip as often as inconsistent users do: nothing
+        tells readers which split they are in.
+        """
+        return 0.0 if Posterior(self.evidence).is_possible else SLIPS
+
+    @cached_property
+    def posterior(self) -> Posterior:
+        """What who knows the grammar thinks of the user."""
+        return Posterior(self.evidence, self.slips)
 
 
 Yardstick = Callable[[Shown, DescribedDishes], LoadingPlan]
 
 
 def shown_in(loads: Sequence[tuple[Kitchen, Sequence[int], Evidence]]) -> Shown:
-    """What readers see of demonstrations: finished kitchens, their decisions and their evidence.
-
-    A user whom no rules explain is taken to slip as often as inconsistent users do: nothing tells
-    readers which split they are in.
-    """
+    """What readers see of demonstrations: finished kitchens, their decisions and their evidence."""
     zones, times, firsts = [], [], []
     for kitchen, decisions, _ in loads:
         zones.append(np.minimum(ends_of(kitchen), SINK_ZONE))
@@ -74,7 +83,6 @@ def shown_in(loads: Sequence[tuple[Kitchen, Sequence[int], Evidence]]) -> Shown:
         np.concatenate(times),
         Counter(firsts).most_common(1)[0][0],
         tuple(evidence for *_, evidence in loads),
-        0.0 if Posterior([evidence for *_, evidence in loads]).is_possible else SLIPS,
     )
 
 
@@ -122,7 +130,7 @@ def by_tree(shown: Shown, dishes: DescribedDishes) -> LoadingPlan:
 
 def bayes(shown: Shown, dishes: DescribedDishes) -> LoadingPlan:
     """What the exact reader of the grammar thinks most probable."""
-    return Posterior(shown.evidence, shown.slips).guess(dishes)
+    return shown.posterior.guess(dishes)
 
 
 YARDSTICKS: dict[str, Yardstick] = {

@@ -1,4 +1,9 @@
-"""Wood and tiles, drawn by a seeded generator: the kitchen needs no picture files."""
+"""Wood and tiles, drawn by a seeded generator: the kitchen needs no picture files.
+
+Each takes a tenth of a second or two and is drawn once a process, however many renderers there are.
+"""
+
+from functools import cache
 
 import numpy as np
 from scipy.ndimage import gaussian_filter1d, zoom
@@ -9,21 +14,25 @@ SEED = 7  # of all textures; any other gives another piece of wood
 SIZE = 1024  # pixels along each side; every count of rows and columns divides it
 
 
+@cache
 def oak_floor() -> np.ndarray:
     """Planks along x, each of its own tone, with joints, (SIZE, SIZE, 3) uint8."""
     return _planks((201, 166, 125), rows=16, tones=0.13, joints=0.45, seed=SEED)
 
 
+@cache
 def walnut() -> np.ndarray:
     """The staves of a worktop along x, (SIZE, SIZE, 3) uint8."""
     return _planks((168, 116, 76), rows=16, tones=0.10, joints=0.90, seed=SEED + 1)
 
 
+@cache
 def beech() -> np.ndarray:
     """One pale board without a joint, for trays to tint, (SIZE, SIZE, 3) uint8."""
     return _planks((232, 204, 170), rows=1, tones=0.0, joints=1.0, seed=SEED + 3)
 
 
+@cache
 def ash() -> np.ndarray:
     """One pale board with dark growth rings, for wooden dishes, (SIZE, SIZE, 3) uint8."""
     rings = _streaks(np.random.default_rng(SEED + 4), SIZE, 20.0)
@@ -33,6 +42,7 @@ def ash() -> np.ndarray:
     return _painted(1.0 - 0.35 * dark, (red, green, blue))
 
 
+@cache
 def tiles() -> np.ndarray:
     """White metro tiles, twice as wide as high, in a running bond, (SIZE, SIZE, 3) uint8."""
     rows, columns, joint = 8, 4, 4

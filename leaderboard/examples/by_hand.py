@@ -32,7 +32,7 @@ for split in SPLITS:
     env = gymnasium.make("kitchen_prefs/DishwasherLoading-v0", split=split).unwrapped
     with bz2.open(folder / f"{split}.jsonl.bz2", "wt") as file:
         for session in range(env.split.sessions):
-            observation, _ = env.reset(options={"session": session})
+            observation, _ = env.reset(seed=session, options={"session": session})
             line = {"session": session, "first": env.digest(), "actions": []}
             done = False
             while not done:

@@ -71,6 +71,11 @@ def length_buckets(sets: Tensor) -> list[Tensor]:
     return [group for group in groups if len(group)]
 
 
+def longest(sets: Tensor) -> int:
+    """How many rows the longest of some sets has; their padding is at the end."""
+    return int(is_real(sets).sum(dim=1).max())
+
+
 def select_rows(sets: Tensor, selected: Tensor) -> tuple[Tensor, Tensor]:
     """Move the selected rows of each set to its front, in their order, and cut the rest off.
 

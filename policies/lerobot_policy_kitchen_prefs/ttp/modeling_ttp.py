@@ -5,7 +5,6 @@ from typing import Any
 
 import numpy as np
 import torch
-import torch.nn.functional as F
 from lerobot.datasets import LeRobotDatasetMetadata
 from lerobot.policies import PreTrainedPolicy
 from lerobot.utils.constants import ACTION
@@ -13,12 +12,13 @@ from torch import Tensor, nn
 
 from kitchen_prefs.datasets.demonstration_store import DemonstrationStore
 from kitchen_prefs.envs.lerobot_env import OBS_PROMPT
-from kitchen_prefs.instances import POSE, choosable, is_place_decision
+from kitchen_prefs.instances import POSE, choosable
 
 from ..common.categories import Categories
+from ..common.decision_loss import decision_loss
 from ..common.denoising import Denoiser
 from ..common.failed_choices import FailedChoices, synthesise_failures
-from ..common.instance_sets import accuracies, chosen_rows, length_buckets
+from ..common.instance_sets import chosen_rows
 from ..common.lerobot_features import observed, observed_sets
 from ..common.rack_poses import RackPoses
 from ..common.relabelling import relabel
@@ -59,8 +59,7 @@ class TTPPolicy(PreTrainedPolicy):
         self.recognition = Denoiser() if config.recognise else None  # named so in checkpoints
         self.demonstrations: DemonstrationStore | None = None
         if dataset_meta is not None:
-            chosen_only = config.prompt_tokens == "chosen"
-            self.demonstrations = DemonstrationStore.read(dataset_meta, chosen_only)
+            self.demonstrations = self._read_demonstrations(dataset_meta)
             if config.relabel and not config.described:
                 self.categories = Categories.from_demonstrations(self.demonstrations)
                 self.rack_poses = RackPoses.from_demonstrations(
@@ -72,6 +71,9 @@ class TTPPolicy(PreTrainedPolicy):
 
     def _make_network(self) -> TTPNetwork:
         return (CompactNetwork if self.config.departs_from_paper else TTPNetwork)(self.config)
+
+    def _read_demonstrations(self, dataset_meta: LeRobotDatasetMetadata) -> DemonstrationStore:
+        return DemonstrationStore.read(dataset_meta, self.config.prompt_tokens == "chosen")
 
     @classmethod
     def from_pretrained(cls, pretrained_name_or_path: str | Path, **options: Any) -> "TTPPolicy":
@@ -108,15 +110,11 @@ class TTPPolicy(PreTrainedPolicy):
         """
         pairs, situations = self.pair(batch)
         preference = self._encode(pairs.prompts)
-        is_place = is_place_decision(pairs.sets)  # (S,)
-        losses = pairs.sets.new_zeros(len(is_place))  # (S,)
-        correct = torch.zeros_like(is_place)  # (S,)
-        for bucket in length_buckets(pairs.sets):
-            targets = pairs.targets[bucket]
-            scores = self._score(situations.select(bucket), preference, pairs.prompt_of[bucket])
-            losses[bucket] = F.cross_entropy(scores, targets, reduction="none")
-            correct[bucket] = scores.argmax(dim=1) == targets
-        return losses.mean(), accuracies(correct, is_place)
+
+        def score(bucket: Tensor) -> Tensor:
+            return self._score(situations.select(bucket), preference, pairs.prompt_of[bucket])
+
+        return decision_loss(pairs.sets, pairs.targets, score)
 
     def pair(self, batch: dict[str, Tensor]) -> tuple[Pairs, Situations]:
         """Pair a batch with prompts; in training, augment the pairs.
@@ -130,11 +128,7 @@ class TTPPolicy(PreTrainedPolicy):
         Raises:
             ValueError: As `forward` does.
         """
-        if self.demonstrations is None:
-            raise ValueError(
-                "TTP draws its prompts from the training data set; make it with "
-                "dataset_meta=dataset.meta, as lerobot-train does."
-            )
+        demonstrations = self._training_demonstrations()
         # The draws depend on the batch alone, so that a resumed run repeats an unbroken one.
         generator = np.random.default_rng(batch["index"].cpu().numpy())
         sets, history = split_history(batch)  # (B, N, 13), (B, K, 13)
@@ -142,7 +136,7 @@ class TTPPolicy(PreTrainedPolicy):
             sets=sets,
             targets=chosen_rows(sets, batch[ACTION]),
             episodes=batch["episode_index"].cpu().numpy(),
-            demonstrations=self.demonstrations,
+            demonstrations=demonstrations,
             rounds=self.config.rounds if self.training else 1,
             generator=generator,
         )
@@ -156,6 +150,19 @@ class TTPPolicy(PreTrainedPolicy):
         if self.training and self.config.failures:
             failed = synthesise_failures(pairs.sets, pairs.targets, generator)
         return pairs, Situations(pairs.sets, failed, history[pairs.sample])
+
+    def _training_demonstrations(self) -> DemonstrationStore:
+        """The demonstrations to draw prompts from.
+
+        Raises:
+            ValueError: If the policy was made without a data set.
+        """
+        if self.demonstrations is None:
+            raise ValueError(
+                "TTP draws its prompts from the training data set; make it with "
+                "dataset_meta=dataset.meta, as lerobot-train does."
+            )
+        return self.demonstrations
 
     # Acting ----------------------------------------------------------------------------------
 

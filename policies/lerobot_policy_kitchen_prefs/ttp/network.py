@@ -31,6 +31,7 @@ from ..common.fourier_features import (
     QUATERNION_RANGE,
     FourierFeatures,
 )
+from ..common.instance_sets import longest
 from .configuration_ttp import DIM_DESCRIPTION, MAX_DECISIONS, TTPConfig
 from .encoder_ablations import (
     FourierTimeEncoder,
@@ -244,8 +245,8 @@ class Situations(NamedTuple):
 
     def trimmed(self) -> Self:
         """The same situations without the padding that the longest set does not need."""
-        longest = int(is_real(self.sets).sum(dim=1).max())  # padding is at the end
-        return self._replace(sets=self.sets[:, :longest], failed=self.failed[:, :longest])
+        rows = longest(self.sets)
+        return self._replace(sets=self.sets[:, :rows], failed=self.failed[:, :rows])
 
     def with_act_token(self) -> tuple[Tensor, Tensor]:
         """The rows of sets and history, and an ACT token's row of zeros as the last.

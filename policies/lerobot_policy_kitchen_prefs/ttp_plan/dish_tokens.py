@@ -76,8 +76,8 @@ class PlacedDishes(NamedTuple):
     def only(self, shown: Tensor) -> Self:
         """The same demonstrations as if there were no other dishes than some, (G, n) bool."""
         mask = self.mask & shown
-        stands = _stands(self.attributes, self.zones) * mask[..., None, None]  # (G, n, 4, 7)
-        return self._replace(mask=mask, contents=stands.cumsum(dim=1) - stands)
+        contents = _contents_before(self.attributes, self.zones, mask)
+        return self._replace(mask=mask, contents=contents)
 
     def contents_at(self, decision: Tensor) -> Tensor:
         """What stands in the zones before a decision of each demonstration, (G,): (G, 4, 7)."""
@@ -114,7 +114,6 @@ def placed_dishes(demonstrations: Tensor) -> PlacedDishes:
     picked, _ = select_rows(demonstrations, chosen & dishes)
     picked = picked[:, : placed.shape[1]]  # a last dish may still be in the hand
     attributes, zones = attributes_of(placed), zone_of(placed)
-    stands = _stands(attributes, zones) * mask[..., None, None]  # (G, n, 4, 7)
     length = demonstrations[..., DECISION].amax(dim=1, keepdim=True).clamp(min=1)  # (G, 1)
     return PlacedDishes(
         attributes=attributes,
@@ -123,7 +122,7 @@ def placed_dishes(demonstrations: Tensor) -> PlacedDishes:
         arrivals=_first_visible(picked, demonstrations, dishes),
         decisions=picked[..., DECISION],
         times=picked[..., DECISION] / length,
-        contents=stands.cumsum(dim=1) - stands,
+        contents=_contents_before(attributes, zones, mask),
         mask=mask,
         demonstration=torch.zeros_like(zones),
     )
@@ -185,6 +184,12 @@ def _stands(attributes: Tensor, zones: Tensor) -> Tensor:
     """Each dish as a count of one in its zone, of none in the sink, (..., 4, 7)."""
     in_zone = F.one_hot(zones, ELSEWHERE + 1)[..., :ZONES].to(attributes.dtype)
     return in_zone[..., None] * attributes[..., None, CATEGORY_PART]
+
+
+def _contents_before(attributes: Tensor, zones: Tensor, mask: Tensor) -> Tensor:
+    """What stands in each zone before each dish of (G, n) is put away, (G, n, 4, 7)."""
+    stands = _stands(attributes, zones) * mask[..., None, None]
+    return stands.cumsum(dim=1) - stands
 
 
 def _first_visible(picked: Tensor, demonstrations: Tensor, dishes: Tensor) -> Tensor:

@@ -40,8 +40,7 @@ def shown(alike: Tensor, destinations: Tensor, preferred: Tensor, mask: Tensor) 
         preferred: (G, n, n).
         mask: Which dishes are real, (G, n) bool.
     """
-    others = alike * (1 - torch.eye(alike.shape[-1], device=alike.device))  # (G, h, n, n)
-    where = others @ destinations[:, None]  # (G, h, n, 5)
+    where = to_others(alike) @ destinations[:, None]  # (G, h, n, 5)
     own = (where * destinations[:, None]).sum(-1) / (where.sum(-1) + DOUBT)  # (G, h, n)
     of_destinations = (own * mask[:, None]).sum(-1) / mask.sum(-1)[:, None].clamp(min=1)
     agreeing = alike @ preferred[:, None] @ alike.mT  # (G, h, n, n)
@@ -50,6 +49,11 @@ def shown(alike: Tensor, destinations: Tensor, preferred: Tensor, mask: Tensor) 
     of_preferences = of_preferences / preferred.sum((1, 2))[:, None].clamp(min=1)
     explained = torch.stack([of_destinations, of_preferences], dim=-1)  # (G, h, 2)
     return Shown(destinations, preferred, explained)
+
+
+def to_others(alike: Tensor) -> Tensor:
+    """How far dishes are like others, (..., n, n): zero for each and itself."""
+    return alike * (1 - torch.eye(alike.shape[-1], device=alike.device))
 
 
 def evidence(alike: Tensor, known: Shown, own: Tensor | None = None) -> Tensor:

@@ -11,11 +11,12 @@ from torch import Tensor
 
 from kitchen_prefs.datasets.demonstration_store import DemonstrationStore
 from kitchen_prefs.envs.lerobot_env import OBS_INSTANCES, OBS_PROMPT
-from kitchen_prefs.instances import DECISION, POSE, as_rows, choosable, is_place_decision
+from kitchen_prefs.instances import DECISION, POSE, as_rows, choosable
 from kitchen_prefs.people.splits import PROMPTS_OF_TWO_USERS
 
+from ..common.decision_loss import decision_loss
 from ..common.failed_choices import FailedChoices, synthesise_failures
-from ..common.instance_sets import accuracies, chosen_rows, length_buckets
+from ..common.instance_sets import chosen_rows
 from ..common.lerobot_features import observed, observed_sets
 from ..ttp.modeling_ttp import TTPPolicy
 from ..ttp.prompt_tokens import split_prompts, tokens_of_prompts
@@ -35,14 +36,10 @@ class PlanTTPPolicy(TTPPolicy):
     network: PlanNetwork
     config: PlanTTPConfig
 
-    def __init__(
-        self, config: PlanTTPConfig, dataset_meta: LeRobotDatasetMetadata | None = None, **_: Any
-    ) -> None:
-        """Make the network, and read the demonstrations; arguments are those of `TTPPolicy`."""
-        super().__init__(config, dataset_meta)
-        if dataset_meta is not None:
-            whole = DemonstrationStore.read(dataset_meta, chosen_only=False)
-            self._placed = read_placed(whole)
+    def _read_demonstrations(self, dataset_meta: LeRobotDatasetMetadata) -> DemonstrationStore:
+        whole = DemonstrationStore.read(dataset_meta, chosen_only=False)
+        self._placed = read_placed(whole)
+        return whole.chosen()
 
     def _make_network(self) -> PlanNetwork:
         return PlanNetwork(self.config)
@@ -81,20 +78,18 @@ class PlanTTPPolicy(TTPPolicy):
         shown, asked = augmentation.split(own)
         preference = self._preference_of(others, shown, augmentation)
         decided = torch.arange(min(len(sets), self.config.decided), device=sets.device)
-        loss, facts = self._loss_of_decisions(
-            situations.select(decided), targets[decided], preference
-        )
+        situations, targets = situations.select(decided), targets[decided]
+
+        def score(bucket: Tensor) -> Tensor:
+            return self._score_rows(situations.select(bucket), preference, bucket)
+
+        loss, facts = decision_loss(situations.sets, targets, score)
         plan_loss, plan_facts = self._loss_of_plans(asked, preference)
         return loss + plan_loss, facts | plan_facts
 
     def _others(self, episodes: np.ndarray, generator: np.random.Generator) -> np.ndarray:
         """Another episode of each episode's user, (B,) int."""
-        store = self.demonstrations
-        if store is None:
-            raise ValueError(
-                "TTP draws its prompts from the training data set; make it with "
-                "dataset_meta=dataset.meta, as lerobot-train does."
-            )
+        store = self._training_demonstrations()
         drawn = np.array(
             [store.draw(store.preference[e], np.array([e]), generator) for e in episodes]
         )
@@ -109,9 +104,8 @@ class PlanTTPPolicy(TTPPolicy):
         self, episodes: np.ndarray, own: PlacedDishes, augmentation: Augmentation
     ) -> Preferences:
         """Read episodes, and dishes that are shown beside them."""
-        assert self.demonstrations is not None
-        device = own.mask.device
-        prompts = torch.from_numpy(self.demonstrations.prompts(list(episodes))).to(device)
+        device, store = own.mask.device, self._training_demonstrations()
+        prompts = torch.from_numpy(store.prompts(list(episodes))).to(device)
         prompts = augmentation.of_rows(prompts)  # (B, P, 22)
         dishes = augmentation.of_dishes(self._placed_by(episodes, device))
         dishes = augmentation.of_prompts(dishes).with_others(own)
@@ -124,17 +118,6 @@ class PlanTTPPolicy(TTPPolicy):
         """What episodes do with their dishes."""
         placed = self._placed.select(torch.from_numpy(episodes))
         return PlacedDishes(*(part.to(device) for part in placed))
-
-    def _loss_of_decisions(
-        self, situations: PlanSituations, targets: Tensor, preference: Preferences
-    ) -> tuple[Tensor, dict[str, float]]:
-        is_place = is_place_decision(situations.sets)  # (B,)
-        losses, correct = situations.sets.new_zeros(len(is_place)), torch.zeros_like(is_place)
-        for bucket in length_buckets(situations.sets):
-            scores = self._score_rows(situations.select(bucket), preference, bucket)
-            losses[bucket] = F.cross_entropy(scores, targets[bucket], reduction="none")
-            correct[bucket] = scores.argmax(dim=1) == targets[bucket]
-        return losses.mean(), accuracies(correct, is_place)
 
     def _loss_of_plans(
         self, asked: PlacedDishes, preference: Preferences

@@ -9,11 +9,11 @@ import torch
 import torch.nn.functional as F
 from torch import Tensor, nn
 
-from kitchen_prefs.instances import DECISION, IS_PLACE, is_place_decision, is_real
+from kitchen_prefs.instances import DECISION, IS_PLACE, is_place_decision
 
 from ..common.collision_model import attended_rows
 from ..common.dish_locations import ELSEWHERE, on_counter, zone_of
-from ..common.instance_sets import gather_rows, is_dish, selected_indices
+from ..common.instance_sets import gather_rows, is_dish, longest, selected_indices
 from ..common.score_correction import correct_scores
 from ..ttp.compact_network import CompactNetwork
 from ..ttp.encoder_ablations import hide
@@ -50,8 +50,8 @@ class PlanSituations(NamedTuple):
 
     def trimmed(self) -> Self:
         """The same situations without the padding that the longest set does not need."""
-        longest = int(is_real(self.sets).sum(dim=1).max())  # padding is at the end
-        return self._replace(sets=self.sets[:, :longest], failed=self.failed[:, :longest])
+        rows = longest(self.sets)
+        return self._replace(sets=self.sets[:, :rows], failed=self.failed[:, :rows])
 
 
 class Preferences(NamedTuple):

@@ -14,7 +14,7 @@ from torch import Tensor, nn
 from ..common.dish_locations import ZONES
 from .configuration_ttp_plan import PlanTTPConfig
 from .dish_tokens import CATEGORIES, CATEGORY_PART, PlacedDishes
-from .evidence import EVIDENCE, Shown, evidence, shown
+from .evidence import EVIDENCE, Shown, evidence, shown, to_others
 from .match_attention import OF_SHOWN, Likeness, MatchLayer, by_head
 
 DESTINATIONS = ZONES + 1  # and the sink
@@ -90,9 +90,8 @@ class PlanReader(nn.Module):
         common = self.likeness(dishes.attributes, dishes.attributes)  # (G, n, n, 8)
         alike = by_head(common) * dishes.mask[:, None, None]  # (G, h, n, n)
         known = shown(alike, where, dishes.preferred().to(where.dtype), dishes.mask)
-        others = alike * (1 - torch.eye(alike.shape[-1], device=alike.device))
         features = (
-            self.evidence(evidence(others, known, where))
+            self.evidence(evidence(to_others(alike), known, where))
             + self.put_away(torch.cat([where, _times(dishes)], dim=-1))
             + self.room_then(self.room(dishes.contents, dishes.attributes, names))
         )  # (G, n, d)

@@ -4,23 +4,14 @@ import pytest
 import torch
 from lerobot.configs import FeatureType, PolicyFeature
 from lerobot.datasets import LeRobotDataset
+from tiny_ttp import TINY
 
 from kitchen_prefs.datasets import make_dataset
 from kitchen_prefs.instances import DESCRIBED_CAPACITY, DESCRIBED_COLUMNS
 from lerobot_policy_kitchen_prefs.ttp_plan import PlanTTPConfig, PlanTTPPolicy
 
 NAME = "dishwasher-people_train-u2-v2"
-TINY = {
-    "dim_pose": 16,
-    "dim_extents": 8,
-    "dim_time": 4,
-    "dim_marker": 4,
-    "dim_feedforward": 32,
-    "reader_dim": 32,
-    "reader_layers": 2,
-    "reader_feedforward": 32,
-    "device": "cpu",
-}
+SMALL_READER = {"reader_dim": 32, "reader_layers": 2, "reader_feedforward": 32}
 
 
 @pytest.fixture(scope="session")
@@ -38,7 +29,7 @@ def make_policy():
         config = PlanTTPConfig(
             input_features={"observation.instances": PolicyFeature(FeatureType.STATE, shape)},
             output_features={"action": PolicyFeature(FeatureType.ACTION, (7,))},
-            **TINY | settings,
+            **TINY | SMALL_READER | settings,
         )
         torch.manual_seed(0)
         return PlanTTPPolicy(config, dataset_meta=dataset.meta if dataset else None)
